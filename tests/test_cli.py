@@ -81,7 +81,6 @@ COMMANDS = (
     *("practise", "presets", "render", "replay", "score", "simulate", "surfaces", "sweep"),
     *("body fit", "mappings show", "mappings convert", "presets check"),
 )
-NAMING_PAGES = ("serve", "build", "replay", "simulate", "surfaces", "sweep")
 
 
 def test_help_lists_all_commands(command):

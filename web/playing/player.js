@@ -159,7 +159,7 @@ export class Player {
   }
 
   /**
-   * End the notes of a port that is gone; without a frame, after all that is requested of it ahead.
+   * End the notes of a port that is gone; without a frame, after all its commands ahead.
    * @param {number} port
    * @param {number | null} frame
    */

@@ -22,6 +22,7 @@ from yehu_server.core.midi.channels import plays
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE
 from yehu_server.core.player.note_range import NoteRange
 from yehu_server.core.player.parameter_indices import INDEX
+from yehu_server.errors import ParameterError
 from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bind import Bind
@@ -29,6 +30,7 @@ from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import NOTE, POLY_PRESSURE, STEPS, VELOCITY, is_address
 
 UNMAPPED = Mapping("", ())
+ELSEWHERE = -1  # the channel of notes that do not come from MIDI
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,18 @@ class Key:
 
     channel: int
     note: float
+
+    @classmethod
+    def of(cls, key: Key | float) -> Key:
+        """A key; of no MIDI channel where it is a number, which is the same in single precision."""
+        return key if isinstance(key, Key) else cls(ELSEWHERE, round(within_midi("note", key), 3))
+
+
+def within_midi(what: str, value: float) -> float:
+    """Return a number within 0 to 127; raises ParameterError for others."""
+    if not 0.0 <= value <= 127.0:  # also refuses NaN
+        raise ParameterError(f"{what}: {value:g} is not within 0 to 127")
+    return value
 
 
 @dataclass(frozen=True)

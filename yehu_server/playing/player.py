@@ -21,17 +21,15 @@ from yehu_server.core.midi.record import SECTION
 from yehu_server.core.midi.tables import SLOTS, plain_tables
 from yehu_server.core.player import commands
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.errors import ParameterError
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import SLOT, TABLE, find
 from yehu_server.playing.learn import Learning
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.part_state import UNMAPPED, Key, PartState
+from yehu_server.playing.part_state import UNMAPPED, Key, PartState, within_midi
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, RangePolicy, Tuning
 
-ELSEWHERE = -1  # the channel of notes that do not come from MIDI
 OWN_VALUES = -1.0  # in place of a velocity: the note has been given its values
 
 
@@ -302,7 +300,7 @@ class Player(PartState):
         A number is a key (fractional MIDI note) of no MIDI channel. Raises ParameterError where
         either is beyond MIDI's range.
         """
-        key, other = key_of(key), within_midi("velocity", velocity) / 127.0
+        key, other = Key.of(key), within_midi("velocity", velocity) / 127.0
         with self._lock:
             frame = self._at(frame)
             self._instrument.post(
@@ -311,7 +309,7 @@ class Player(PartState):
 
     def key_off(self, key: Key | float, *, frame: int | None = None) -> None:
         """Let a key go, which ends its note unless a pedal keeps it; see `key_on`."""
-        key = key_of(key)
+        key = Key.of(key)
         self.post(events.NOTE_OFF, frame, key.channel, key.note)
 
     def receive(
@@ -394,17 +392,3 @@ class Player(PartState):
     def lift(self, *, frame: int | None = None) -> None:
         """Lift a bow drawn by hand, and return it to the player."""
         self.post(commands.LIFT, frame)
-
-
-def key_of(key: Key | float) -> Key:
-    """A key; of no MIDI channel where it is a number, which is the same in single precision."""
-    if isinstance(key, Key):
-        return key
-    return Key(ELSEWHERE, round(within_midi("note", key), 3))
-
-
-def within_midi(what: str, value: float) -> float:
-    """Return a number within 0 to 127; raises ParameterError for others."""
-    if not 0.0 <= value <= 127.0:  # also refuses NaN
-        raise ParameterError(f"{what}: {value:g} is not within 0 to 127")
-    return value

@@ -25,26 +25,26 @@ SIZE = (14.0, 9.0)  # inches
 Draw = Callable[[Any], None]  # into axes
 
 
-def draw_level(axes: Any, watch: PlotData) -> None:
+def draw_level(axes: Any, data: PlotData) -> None:
     """Draw root mean square and peak over time."""
-    times = watch.times_s
-    axes.fill_between(times, LEVELS_DB[0], watch.peaks_db, color=PEAK, lw=0.0, label="peak")
-    axes.plot(times, watch.levels_db, color=LEVEL, lw=1.0, label="level (rms)")
+    times = data.times_s
+    axes.fill_between(times, LEVELS_DB[0], data.peaks_db, color=PEAK, lw=0.0, label="peak")
+    axes.plot(times, data.levels_db, color=LEVEL, lw=1.0, label="level (rms)")
     axes.set(ylim=LEVELS_DB, ylabel="dB of full scale")
     axes.grid(**GRID)
     axes.legend(**ABOVE)
 
 
-def draw_pitch(axes: Any, watch: PlotData) -> None:
+def draw_pitch(axes: Any, data: PlotData) -> None:
     """Draw the pitches that were asked for and, of a single voice, that was heard."""
-    times, asked = watch.asked
+    times, asked = data.asked
     is_asked = bool(np.isfinite(asked).any())
-    for voice in range(watch.voices if is_asked else 0):
+    for voice in range(data.voices if is_asked else 0):
         label = "asked" if voice == 0 else None
         axes.plot(times, asked[:, voice], color=ASKED, lw=1.6, label=label)
-    if watch.voices == 1:
-        axes.plot(watch.times_s, watch.pitches, ".", color=HEARD, ms=2.5, label="played")
-    wanted = (asked if is_asked else watch.pitches).ravel()
+    if data.voices == 1:
+        axes.plot(data.times_s, data.pitches, ".", color=HEARD, ms=2.5, label="played")
+    wanted = (asked if is_asked else data.pitches).ravel()
     wanted = wanted[np.isfinite(wanted)]
     low, high = (wanted.min() - 2.5, wanted.max() + 2.5) if len(wanted) else (64.0, 90.0)
     label_notes(axes, low, high)
@@ -61,18 +61,18 @@ def label_notes(axes: Any, low: float, high: float) -> None:
     axes.grid(**GRID)
 
 
-def draw_spectrogram(axes: Any, watch: PlotData, *, has_pitch: bool = False) -> None:
+def draw_spectrogram(axes: Any, data: PlotData, *, has_pitch: bool = False) -> None:
     """Draw the spectrum over time with its colour bar, and the pitch that was heard over it."""
-    levels = watch.spectra_db
+    levels = data.spectra_db
     axes.set_ylabel("kHz")
     if levels.size == 0:
         return
-    step_s = watch.step / watch.rate
+    step_s = data.step / data.rate
     extent = (
         -0.5 * step_s,
         (levels.shape[1] - 0.5) * step_s,
-        -0.5e-3 * watch.row_hz,
-        1e-3 * (levels.shape[0] - 0.5) * watch.row_hz,
+        -0.5e-3 * data.row_hz,
+        1e-3 * (levels.shape[0] - 0.5) * data.row_hz,
     )
     top = float(levels.max())
     image = axes.imshow(
@@ -80,15 +80,15 @@ def draw_spectrogram(axes: Any, watch: PlotData, *, has_pitch: bool = False) -> 
         origin="lower", interpolation="nearest",
     )  # fmt: skip
     if has_pitch:
-        heard_khz = 1e-3 * watch.a4 * 2.0 ** ((watch.pitches - 69.0) / 12.0)
-        axes.plot(watch.times_s, heard_khz, ".", color=OVER_SPECTRUM, ms=2.5, label="pitch")
+        heard_khz = 1e-3 * data.a4 * 2.0 ** ((data.pitches - 69.0) / 12.0)
+        axes.plot(data.times_s, heard_khz, ".", color=OVER_SPECTRUM, ms=2.5, label="pitch")
         axes.legend(**ABOVE)
     axes.set_ylim(0.0, extent[3])
     axes.figure.colorbar(image, ax=axes, label="dB of a full sine", pad=0.01)
 
 
 def write_picture(
-    watch: PlotData,
+    data: PlotData,
     target: Path,
     title: str,
     level: Draw | None = None,
@@ -104,10 +104,10 @@ def write_picture(
 
     def fill(figure: Any) -> None:
         panels = figure.subplots(3, 1, height_ratios=(1.0, 2.2, 1.8), sharex=True)
-        (level or partial(draw_level, watch=watch))(panels[0])
-        (pitch or partial(draw_pitch, watch=watch))(panels[1])
-        draw_spectrogram(panels[2], watch)
+        (level or partial(draw_level, data=data))(panels[0])
+        (pitch or partial(draw_pitch, data=data))(panels[1])
+        draw_spectrogram(panels[2], data)
         panels[0].set_title(png.plain(title), loc="left")
-        panels[2].set(xlim=(0.0, max(watch.duration_s, 0.01)), xlabel="s")
+        panels[2].set(xlim=(0.0, max(data.duration_s, 0.01)), xlabel="s")
 
     png.write_picture(target, SIZE, fill, overwrite=overwrite)

@@ -58,12 +58,12 @@ def spectrogram(
     >>> yehu.plot.spectrogram(tune, top_hz=5000).get_ylabel()
     'kHz'
     """
-    watch = plot_data_of(sound, sample_rate)
+    data = plot_data_of(sound, sample_rate)
     axes = axes_of(ax)
     if not (isinstance(top_hz, Real) and 0.0 < top_hz <= TOP_HZ):
         raise ParameterError(f"top_hz: {top_hz} is not within 0 to {TOP_HZ:g} Hz")
-    draw_spectrogram(axes, watch, has_pitch=pitch)
-    axes.set(xlim=(0.0, watch.duration_s), ylim=(0.0, 1e-3 * top_hz), xlabel="s")
+    draw_spectrogram(axes, data, has_pitch=pitch)
+    axes.set(xlim=(0.0, data.duration_s), ylim=(0.0, 1e-3 * top_hz), xlabel="s")
     return axes
 
 
@@ -90,10 +90,10 @@ def level(sound: Any, sample_rate: float | None = None, *, ax: Axes | None = Non
     >>> yehu.plot.level(yehu.render([("A4", 0.0, 0.3)])).get_ylabel()
     'dB of full scale'
     """
-    watch = plot_data_of(sound, sample_rate)
+    data = plot_data_of(sound, sample_rate)
     axes = axes_of(ax)
-    draw_level(axes, watch)
-    axes.set(xlim=(0.0, watch.duration_s), xlabel="s")
+    draw_level(axes, data)
+    axes.set(xlim=(0.0, data.duration_s), xlabel="s")
     return axes
 
 
@@ -124,10 +124,10 @@ def pitch(
     >>> yehu.plot.pitch(yehu.render([("F4", 0.0, 0.3), ("A4", 0.3, 0.3)])).get_ylabel()
     'pitch'
     """
-    watch = plot_data_of(sound, sample_rate, a4)
+    data = plot_data_of(sound, sample_rate, a4)
     axes = axes_of(ax)
-    draw_pitch(axes, watch)
-    axes.set(xlim=(0.0, watch.duration_s), xlabel="s")
+    draw_pitch(axes, data)
+    axes.set(xlim=(0.0, data.duration_s), xlabel="s")
     return axes
 
 
@@ -179,12 +179,12 @@ def plot_data_of(
     if is_pressure(sound):
         samples = samples / max(float(np.abs(samples).max(initial=0.0)), LEAST_PRESSURE)
     a4 = float(getattr(sound, "a4", 440.0) if a4 is None else a4)
-    watch = PlotData(rate, len(samples) / rate, 1, a4, step_s)
+    data = PlotData(rate, len(samples) / rate, 1, a4, step_s)
     times, pitches = getattr(sound, "asked", (np.zeros(0), np.zeros(0)))
     begin = 0
     for end, pitch_asked in zip((rate * times).round().astype(int), pitches, strict=True):
-        watch.take(samples[begin:end], [float(pitch_asked)])
+        data.take(samples[begin:end], [float(pitch_asked)])
         begin = end
-    watch.take(samples[begin:], [None])
-    watch.finish()
-    return watch
+    data.take(samples[begin:], [None])
+    data.finish()
+    return data

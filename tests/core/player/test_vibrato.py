@@ -73,7 +73,7 @@ def test_it_is_narrower_where_brilliance_raises_a_harmonic_that_the_body_swings(
 def test_the_players_own_is_narrower_near_the_nut():
     depths = [played(note, phrasing=0.5)[0] for note in (66, 70, 79)]
     assert depths == pytest.approx([20.0, 28.0, 30.0])
-    assert played(66, vibrato=30.0)[0] == 30.0  # what is requested is not
+    assert played(66, vibrato=30.0)[0] == 30.0  # what is asked for is not
 
 
 def test_a_long_open_string_is_stopped_on_the_other_for_its_vibrato():

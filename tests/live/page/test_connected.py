@@ -52,7 +52,7 @@ def server(said) -> Iterator[Server]:
 
 @pytest.fixture(autouse=True)
 def _silent(server) -> None:
-    """Every part begins as at the start: what a page commands comes by another ring than resets."""
+    """Every part begins as at the start: commands of pages come by another ring than resets."""
     for player in server.players:
         player.reset(frame=player.frame_of())
         frame, instrument = player.frame_of(), player.instrument

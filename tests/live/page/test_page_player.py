@@ -1,4 +1,4 @@
-"""The page's player commands what the server's does: the same interpreter, in WebAssembly."""
+"""The page's player posts what the server's does: the same interpreter, in WebAssembly."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ Requested = tuple[float, ...]  # frame, kind, index, value, other
 
 
 class Recorder(Leader):
-    """Stands for an instrument, and records what is requested of it, as soon as it is posted."""
+    """Stands for an instrument, and records what is asked of it, as soon as it is posted."""
 
     frame = 0
     is_live = False

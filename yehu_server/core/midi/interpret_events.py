@@ -139,7 +139,7 @@ def apply_start_values(m: Any, t: Any, frame: int, with_all: bool) -> None:
 
 @compiled_exactly
 def command(m: Any, frame: int, kind: int, index: int, value: float, other: float) -> None:
-    """Pass on what somebody commands who knows the player (``player.commands``)."""
+    """Pass on a command (``player.commands``) that was posted as an event."""
     is_right = math.isfinite(value) and math.isfinite(other)
     if kind in (WRITE, HOLD, EXPRESS):
         is_right = is_right and 0 <= index < PARAMETER_COUNT

@@ -25,7 +25,7 @@ SECTION = INDEX["/playing/section"]
 MIDI = np.dtype(
     [
         ("tables", np.int64),  # number of those in use
-        # What was requested of parameters, by index; and which are held.
+        # Values asked for, by parameter index; and which are held.
         ("value", np.float64, PARAMETER_COUNT),
         ("is_held", np.int64, PARAMETER_COUNT),
         # Held keys, in the order pressed, and the one that sounds: its number, or NONE.

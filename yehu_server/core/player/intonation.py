@@ -30,7 +30,7 @@ def in_tables(p: Any, string: int, pitch: float) -> float:
 def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float) -> float:
     """Finger position (m) for a pitch (fractional MIDI note) on string 0 or 1.
 
-    A faster bow changes the pitch: `speed` (m/s) is the one the player commands for. Notes
+    A faster bow changes the pitch: `speed` (m/s) is the one that is asked for. Notes
     that are bowed more slowly were measured so. `sharper` (cents) is what the ear adds to the
     measured sharpening.
     """

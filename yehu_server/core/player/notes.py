@@ -271,7 +271,7 @@ def is_touched(p: Any) -> bool:
 
 @compiled_exactly
 def set_assist(p: Any, c: Any) -> None:
-    """Let the bow's force follow its speed as far as requested."""
+    """Let the bow's force follow its speed as far as is asked for."""
     move(p, c, BOW_ASSIST, p.value[ASSIST], USUAL_MS)
 
 
@@ -292,7 +292,7 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 
 @compiled_exactly
 def draw_on(p: Any, c: Any) -> None:
-    """Draw as parameters command by now, but let a move of the gesture take its time."""
+    """Draw as parameters now say, but let a move of the gesture take its time."""
     left_ms = 1e3 * (p.gesture.move_ends - (c.frame - p.note_began) / p.rate)
     draw(p, c, max(left_ms, SMOOTH_MS[BOW_SPEED]))
 

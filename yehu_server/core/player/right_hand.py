@@ -72,7 +72,7 @@ USUAL_PLUCK = find("/pluck/position").default
 
 @compiled_exactly
 def requested_speed(p: Any) -> float:
-    """Bow speed (m/s) that the player commands for."""
+    """The bow speed that is asked for (m/s)."""
     share = SOFTEST + (1.0 - SOFTEST) * p.value[DYNAMICS]
     return float(p.value[SPEED] * share * struck_speed(p) * p.speed_variation * p.pace)
 
@@ -87,7 +87,7 @@ def bowing_of(p: Any, pitch: float, column: int) -> float:
 
 @compiled_exactly
 def requested_place(p: Any) -> float:
-    """The bow's place that the player commands for, as a share of the sounding length."""
+    """The bow's place that is asked for, as a share of the sounding length."""
     return float(p.value[POSITION] if p.gesture.node == NONE else PLACE)
 
 

@@ -12,7 +12,8 @@ from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of
 from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, UNIT
-from yehu_server.playing.player import Player, within_midi
+from yehu_server.playing.part_state import within_midi
+from yehu_server.playing.player import Player
 
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 CHOSEN = "/playing/articulation"

@@ -1,4 +1,4 @@
-"""Posts what pages command to the ring from which the audio callback takes it.
+"""Posts the commands of pages to the ring from which the audio callback takes it.
 
 A page reads MIDI and mappings itself, and sends what it would post. Its keys lie on channels of
 its own, so that they are not mistaken for those of another page, or of MIDI.

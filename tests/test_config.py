@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from yehu_server import cli
-from yehu_server.cli.config import MOST_VALUES, parse
+from yehu_server.cli.config import MAX_VALUES, parse
 from yehu_server.cli.serve_options import options_of
 
 # MIDI systems of other machines, which RtMidi was not compiled for.
@@ -72,7 +72,7 @@ def test_an_option_that_may_be_repeated_adds_to_those_of_the_file(file):
 def test_an_error_in_the_file_names_file_and_line(subtests, file, refused):
     for text, reason in [
         ("help = true", "cannot ask for help"),
-        (f"midi-in = [{'1,' * 30_000}]", f"midi-in: more than {MOST_VALUES} values"),
+        (f"midi-in = [{'1,' * 30_000}]", f"midi-in: more than {MAX_VALUES} values"),
         ("rate = 'fast'", ":2: rate: 'fast' is not a number"),
         ("rat = 48000", ":2: rat: unknown option; did you mean rate?"),
         ("rate = [", "not a TOML file"),

@@ -6,7 +6,7 @@ import pytest
 
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.util.documents import Document, Fields
-from yehu_server.util.parsing import MOST_KEY_PARTS, parse_toml
+from yehu_server.util.parsing import MAX_KEY_PARTS, parse_toml
 from yehu_server.util.values import choice, flag, number, whole
 
 TEXT = """
@@ -120,7 +120,7 @@ def test_what_is_as_usual_is_read(text, value):
 @pytest.mark.parametrize("part", [".a", ' . "a b"', ".'a'", "\t.\ta-1"])
 @pytest.mark.parametrize("around", ["{} = 1", "[{}]", "[[{}]]", "x = {{ {} = 1 }}"])
 def test_a_key_of_very_many_parts_is_refused_before_it_takes_time(part, around):
-    parse_toml(around.format("a" + part * (MOST_KEY_PARTS - 1)))
+    parse_toml(around.format("a" + part * (MAX_KEY_PARTS - 1)))
     with pytest.raises(ValueError, match="parts"):
         parse_toml(around.format("a" + part * 20_000))
 

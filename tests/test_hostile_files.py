@@ -20,7 +20,7 @@ from yehu_server.scores.gesture import read_gesture
 from yehu_server.scores.musicxml.reader import read_musicxml
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.simulation.run import Simulation
-from yehu_server.util.parsing import MOST_DEPTH, parse_json, parse_toml
+from yehu_server.util.parsing import MAX_DEPTH, parse_json, parse_toml
 
 SERVE = _parser().parse_args(["serve"]).command
 READERS = {
@@ -94,9 +94,9 @@ def nested(depth: int) -> str:
 
 
 def test_as_deep_as_anybody_nests_is_read():
-    assert parse_json(nested(MOST_DEPTH - 1))[0]
-    assert parse_toml(f"a = {nested(MOST_DEPTH - 2)}")["a"]
-    for deep in (nested(MOST_DEPTH + 1), nested(100_000)):
+    assert parse_json(nested(MAX_DEPTH - 1))[0]
+    assert parse_toml(f"a = {nested(MAX_DEPTH - 2)}")["a"]
+    for deep in (nested(MAX_DEPTH + 1), nested(100_000)):
         with pytest.raises(ValueError, match="nested too deeply"):
             parse_json(deep)
         with pytest.raises(ValueError, match="nested too deeply"):

@@ -11,7 +11,7 @@ from commands import COMMAND
 pytest.importorskip("resource", reason="there is no such limit on Windows")
 
 from yehu_server.cli import serve as limits
-from yehu_server.cli.serve import FILES_NEEDED, MOST_FILES, allow_files
+from yehu_server.cli.serve import FILES_NEEDED, MAX_FILES, allow_files
 
 
 def serve(files: int, *words: str) -> subprocess.CompletedProcess[str]:
@@ -58,7 +58,7 @@ class System:
 @pytest.mark.parametrize(
     ("before", "after"),
     [
-        ((256, -1), (MOST_FILES, -1)),  # macOS
+        ((256, -1), (MAX_FILES, -1)),  # macOS
         ((256, 1024), (1024, 1024)),
         ((1 << 20, 1 << 20), (1 << 20, 1 << 20)),
         ((-1, -1), (-1, -1)),

@@ -123,8 +123,8 @@ def test_lines_of_one_cause_are_bounded_a_minute():
         return [record.getMessage() for record in made if few.filter(record)]
 
     told = logged(1)
-    assert len(told) == 2 * terminal.MOST_REPEATS
-    assert told[terminal.MOST_REPEATS - 1].endswith("left out for a minute)")
+    assert len(told) == 2 * terminal.MAX_REPEATS
+    assert told[terminal.MAX_REPEATS - 1].endswith("left out for a minute)")
     assert len(logged(2)) == len(told)  # each cause by itself
     assert len(logged(3, logging.DEBUG)) == 1000
 

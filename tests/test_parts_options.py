@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from yehu_server import cli
 from yehu_server.cli.config import parse
-from yehu_server.cli.part_options import MOST
+from yehu_server.cli.part_options import MAX
 from yehu_server.cli.serve_options import options_of
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.live.midi.routes import Route
@@ -18,7 +18,7 @@ def served(*words: str):
 
 
 def test_there_are_as_many_parts_as_a_stage_has_room_for():
-    assert MOST == MOST_PARTS
+    assert MAX == MOST_PARTS
     assert len(served("--parts", "16").parts) == 16
 
 

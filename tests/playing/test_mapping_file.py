@@ -16,7 +16,7 @@ from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import load, mapping_folder, user_mappings
 from yehu_server.playing.mapping_file import read_mapping_file
 from yehu_server.playing.mapping_writer import canonical
-from yehu_server.util.documents import MOST_ERRORS
+from yehu_server.util.documents import MAX_ERRORS
 from yehu_server.util.parsing import lines_of
 
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
@@ -165,7 +165,7 @@ def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines_unless_there_ar
     assert [line.split(":")[0] for line in lines] == ["2", "8", "10", "22"]
     with pytest.raises(MappingError) as caught:
         read(BIND.replace("pressure", "presure") * 200)
-    assert len(caught.value.more) == MOST_ERRORS - 1
+    assert len(caught.value.more) == MAX_ERRORS - 1
 
 
 keys = st.text("ab-_1", min_size=1, max_size=3) | st.text("a.\"'=[]{}#\\ ", max_size=4).map(

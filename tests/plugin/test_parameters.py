@@ -12,7 +12,7 @@ from yehu_server.params.table import TABLE
 from yehu_server.plugin import build as building
 from yehu_server.plugin.carried import MAPPINGS, carried
 from yehu_server.plugin.header import header
-from yehu_server.plugin.parameters import LEAST_NUMBER, LEFT_OUT, parameters
+from yehu_server.plugin.parameters import LEFT_OUT, MIN_NUMBER, parameters
 from yehu_server.plugin.targets import SYSTEMS
 from yehu_server.util.files import shipped_folder
 
@@ -52,7 +52,7 @@ def test_every_parameter_of_the_table_is_there_as_it_is(shown):
 def test_names_numbers_and_symbols_are_of_one_parameter_each(shown):
     for what in ("name", "number", "symbol"):
         assert len({getattr(each, what) for each in shown.values()}) == len(shown)
-    assert all(LEAST_NUMBER <= each.number < 2 * LEAST_NUMBER for each in shown.values())
+    assert all(MIN_NUMBER <= each.number < 2 * MIN_NUMBER for each in shown.values())
     assert shown["/playing/bow_position"].name == "Bow position"
     assert shown["/bow/position"].name == "Bow position by hand"
     assert shown["/finger/2/press"].name == "Finger 2 press by hand"

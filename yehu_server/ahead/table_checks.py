@@ -33,22 +33,22 @@ from yehu_server.core.midi.tables import (
 from yehu_server.core.player.parameter_indices import HIGHEST, LOWEST, PARAMETER_COUNT
 
 PAIRS, NRPNS = 32, 1 << 14
-MOST = 1e9
+MAX = 1e9
 TINY = 1e-200  # what a number of the tables divides by is larger
 ANY, WHOLE, WHOLE_OR_NONE, ANY_OR_NONE = range(4)  # NaN stands for none
 SWITCHES = ("invert", "soft", "by_range", "for_all", "mpe", "is_equal", "has_programs")
 # What each field may hold: kind, lowest, highest.
 FIELDS = {
     "binds": (WHOLE, 0, MOST_BINDS),
-    "source": (WHOLE, 0, MOST),
+    "source": (WHOLE, 0, MAX),
     "first": (WHOLE, 0, MOST_BINDS - 1),
     "target": (WHOLE, 0, PARAMETER_COUNT - 1),
-    "lo": (ANY, -MOST, MOST),
-    "hi": (ANY, -MOST, MOST),
+    "lo": (ANY, -MAX, MAX),
+    "hi": (ANY, -MAX, MAX),
     "curve": (WHOLE, 0, POINTS),
     "first_point": (WHOLE, 0, MOST_POINTS),
     "points": (WHOLE, 0, MOST_POINTS),
-    "smoothing_ms": (ANY, 0, MOST),
+    "smoothing_ms": (ANY, 0, MAX),
     "channels": (WHOLE, 0, (1 << IN_PORT) - 1),
     "input_lo": (ANY, -1e307, 1e307),
     "input_hi": (ANY, -1e307, 1e307),
@@ -58,16 +58,16 @@ FIELDS = {
     "first_switch": (WHOLE_OR_NONE, 0, KEYS - 1),
     "starts": (WHOLE, 0, PARAMETER_COUNT),
     "start_row": (WHOLE, 0, PARAMETER_COUNT - 1),
-    "start_value": (ANY, -MOST, MOST),
-    "usual": (ANY, -MOST, MOST),
-    "pitch": (ANY_OR_NONE, -MOST, MOST),
+    "start_value": (ANY, -MAX, MAX),
+    "usual": (ANY, -MAX, MAX),
+    "pitch": (ANY_OR_NONE, -MAX, MAX),
     "policy": (WHOLE, 0, SKIP),
-    "lowest": (ANY, -MOST, MOST),
-    "highest": (ANY, -MOST, MOST),
+    "lowest": (ANY, -MAX, MAX),
+    "highest": (ANY, -MAX, MAX),
     "received": (WHOLE, -1, (1 << IN_PORT) - 1),
     "has_program": (WHOLE, 0, 1),
     "program_row": (WHOLE_OR_NONE, 0, PARAMETER_COUNT - 1),
-    "program_value": (ANY, -MOST, MOST),
+    "program_value": (ANY, -MAX, MAX),
     **dict.fromkeys(SWITCHES, (WHOLE, 0, 1)),
 }
 

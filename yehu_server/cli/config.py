@@ -13,7 +13,7 @@ from yehu_server.util.documents import Document
 from yehu_server.util.values import brief, flag
 
 NOT_IN_FILES = {"--config": "cannot name another", "--help": "cannot ask for help"}
-MOST_VALUES = 1000  # of one option
+MAX_VALUES = 1000  # of one option
 
 
 def add_config(group: Any, command: Parser) -> None:
@@ -70,8 +70,8 @@ def _set(command: Parser, namespace: argparse.Namespace, name: str, value: Any) 
         values = value
     elif isinstance(value, dict):  # such as [set]
         values = [f"{key}={_text(entry)}" for key, entry in value.items()]
-    if len(values) > MOST_VALUES:
-        raise ParameterError(f"more than {MOST_VALUES} values")
+    if len(values) > MAX_VALUES:
+        raise ParameterError(f"more than {MAX_VALUES} values")
     for each in values:
         action(command, namespace, _converted(action, _text(each)), option)
 

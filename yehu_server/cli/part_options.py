@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from yehu_server.live.options import PartOptions
     from yehu_server.playing.options import PlayingOptions
 
-MOST = 16  # engine.rig.MOST_PARTS, which takes a second to import
+MAX = 16  # engine.rig.MOST_PARTS, which takes a second to import
 
 
 def add_parts(group: Any) -> None:
@@ -32,7 +32,7 @@ def add_parts(group: Any) -> None:
     add_options(
         group,
         f"""
-        --parts N: number of players on the stage, each with an instrument, 1 to {MOST} (default: 1)
+        --parts N: number of players on the stage, each with an instrument, 1 to {MAX} (default: 1)
         --part N=PORT[:CHANNEL] ...: part N is played from inputs with these words in their name, or
             one channel of them; may be repeated (default: the first input plays part 1, the second
             part 2, ...)
@@ -45,7 +45,7 @@ def add_parts(group: Any) -> None:
             repeated
         --dry: no room, and bodies that sound alike to both sides
         """,
-        parts={"type": whole_within(1, MOST, f"parts: a stage has 1 to {MOST}"), "default": 1},
+        parts={"type": whole_within(1, MAX, f"parts: a stage has 1 to {MAX}"), "default": 1},
         part=_numbered,
         part_mapping=_numbered,
         part_instrument=_numbered,

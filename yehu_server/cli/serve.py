@@ -45,7 +45,7 @@ try:
 except ImportError:  # not on Windows, where there is no such limit
     resource = None  # type: ignore[assignment]
 
-MOST_FILES = 4096  # more than all clients together need
+MAX_FILES = 4096  # more than all clients together need
 
 
 def allow_files(needed: int) -> None:
@@ -54,7 +54,7 @@ def allow_files(needed: int) -> None:
         return
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     unlimited = resource.RLIM_INFINITY
-    most = MOST_FILES if hard == unlimited else min(hard, MOST_FILES)
+    most = MAX_FILES if hard == unlimited else min(hard, MAX_FILES)
     if soft != unlimited and soft < most:
         with contextlib.suppress(OSError, ValueError):
             resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))

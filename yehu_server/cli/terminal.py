@@ -184,7 +184,7 @@ class _Handler(logging.Handler):
             sys.stderr.flush()
 
 
-MOST_REPEATS, REPEATS_WITHIN_S = 30, 60.0
+MAX_REPEATS, REPEATS_WITHIN_S = 30, 60.0
 
 
 class _RepeatFilter:
@@ -205,10 +205,10 @@ class _RepeatFilter:
         if record.created - since >= REPEATS_WITHIN_S:
             since, count = record.created, 0
         self._logged[cause] = since, count + 1
-        if count + 1 == MOST_REPEATS:
+        if count + 1 == MAX_REPEATS:
             record.msg = f"{record.getMessage()} (more of this kind are left out for a minute)"
             record.args = None
-        return count < MOST_REPEATS
+        return count < MAX_REPEATS
 
 
 class _PlainFormatter(logging.Formatter):

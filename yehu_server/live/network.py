@@ -17,7 +17,7 @@ Address = tuple[str, int]
 # Where a server listens by default, and where commands search for it.
 OSC_ADDRESS: Address = ("127.0.0.1", 9000)
 HTTP_ADDRESS: Address = ("127.0.0.1", 9001)
-MOST_KNOWN = 1 << 16
+MAX_KNOWN = 1 << 16
 # A host's name, or its address in IPv4: labels of 1 to 63 characters, and a final full stop or not.
 _LABEL = r"[A-Za-z0-9_](?:[A-Za-z0-9_-]{0,61}[A-Za-z0-9_])?"
 _NAME = re.compile(rf"{_LABEL}(?:\.{_LABEL})*\.?")
@@ -46,7 +46,7 @@ class Allowed:
         if not self._networks:
             return True
         if host not in self._known:
-            if len(self._known) > MOST_KNOWN:
+            if len(self._known) > MAX_KNOWN:
                 self._known.clear()
             address = ipaddress.ip_address(plain(host))
             self._known[host] = any(address in network for network in self._networks)

@@ -12,7 +12,7 @@ from typing import Any
 
 from yehu_server.errors import ParameterError, PresetError, did_you_mean
 from yehu_server.params.table import BY_ADDRESS, TABLE
-from yehu_server.util.documents import MOST_ERRORS, Document
+from yehu_server.util.documents import MAX_ERRORS, Document
 from yehu_server.util.values import whole, words
 
 VERSION = 1
@@ -56,7 +56,7 @@ class Preset:
 
 def document_of(name: Path | str, text: str = "") -> Document:
     """A preset file as a document; its text may be read later."""
-    return Document(name, "a preset file", PresetError, text=text, most_errors=MOST_ERRORS)
+    return Document(name, "a preset file", PresetError, text=text, most_errors=MAX_ERRORS)
 
 
 def preset_from(document: Document, name: str) -> Preset:

@@ -21,7 +21,7 @@ from yehu_server.params.table import find
 from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.sources import CHANNELS
-from yehu_server.util.documents import MOST_ERRORS, Document, Fields
+from yehu_server.util.documents import MAX_ERRORS, Document, Fields
 from yehu_server.util.values import brief, choice, flag, line, number, whole
 
 MOST_BYTES = 1 << 17  # one that is watched is parsed beside the playing
@@ -42,7 +42,7 @@ class MappingFile:
 
 def document_of(path: Path, text: str = "") -> Document:
     """A mapping file, whose text is known or will be read."""
-    return Document(path, "a mapping file", MappingError, text=text, most_errors=MOST_ERRORS)
+    return Document(path, "a mapping file", MappingError, text=text, most_errors=MAX_ERRORS)
 
 
 def text_of(path: Path) -> str:

@@ -18,7 +18,7 @@ from yehu_server.params.table import TABLE
 LEFT_OUT = {"/playing/section"}
 HANDS = ("bow", "finger", "vibrato", "pluck")
 # Numbers below are for controllers of MIDI, where a format has them as parameters.
-LEAST_NUMBER, NUMBERS = 1 << 30, (1 << 30) - 1
+MIN_NUMBER, NUMBERS = 1 << 30, (1 << 30) - 1
 PRESET, MAPPING, TUNING, CHANCE = "/preset", "/mapping", "/tuning", "/chance"
 CHANCES = ("goes on", "begins with the transport")
 
@@ -44,7 +44,7 @@ class HostParameter:
     @property
     def number(self) -> int:
         """Its number, for ever."""
-        return LEAST_NUMBER | zlib.crc32(self.address.encode()) & NUMBERS
+        return MIN_NUMBER | zlib.crc32(self.address.encode()) & NUMBERS
 
     @property
     def symbol(self) -> str:

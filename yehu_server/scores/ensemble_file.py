@@ -14,7 +14,7 @@ from yehu_server.errors import EnsembleError
 from yehu_server.params.table import find
 from yehu_server.playing.mapping_file import read_settings
 from yehu_server.playing.sources import CHANNELS
-from yehu_server.util.documents import MOST_ERRORS, Document, Fields
+from yehu_server.util.documents import MAX_ERRORS, Document, Fields
 from yehu_server.util.values import line, whole
 
 ROOM_ENTRIES = ("size", "decay", "damping", "level")
@@ -54,7 +54,7 @@ class EnsembleFile:
 
 def read_ensemble(path: Path) -> EnsembleFile:
     """Read an ensemble file. Raises EnsembleError with file and line; its `more` are others."""
-    document = Document(path, "an ensemble file", EnsembleError, most_errors=MOST_ERRORS)
+    document = Document(path, "an ensemble file", EnsembleError, most_errors=MAX_ERRORS)
     table = document.read(path).toml()
     table.read("about", str, "")
     room = table.data.get("room", {})

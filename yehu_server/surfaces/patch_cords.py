@@ -11,7 +11,7 @@ from yehu_server.surfaces.common_layout import local_name, osc_address
 # While a control is moved it ignores the server, whose echo would move it back.
 QUIET_MS = 250
 LEFT, ROW, GAP = 16, 30, 24
-CHARACTER, MOST_CHARACTERS = 7, 60  # of a box: its width, and where its text is wrapped
+CHARACTER, MAX_CHARACTERS = 7, 60  # of a box: its width, and where its text is wrapped
 BOX = re.compile(r"(?:(\d):)?(\w*)(?:\[(.*)([](]))?(?::(\d))?", re.DOTALL)
 
 Box = TypeVar("Box")
@@ -67,4 +67,4 @@ class Network(ABC, Generic[Box]):
 
 def width_of(text: str) -> int:
     """The width of a box (points), by its text."""
-    return CHARACTER * max(6, min(len(text) + 2, MOST_CHARACTERS))
+    return CHARACTER * max(6, min(len(text) + 2, MAX_CHARACTERS))

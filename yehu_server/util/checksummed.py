@@ -12,7 +12,7 @@ from pathlib import Path
 
 from yehu_server.util.files import read_bytes, why
 
-MOST_BYTES = 64 * 2**20
+MAX_BYTES = 64 * 2**20
 DIGEST_BYTES = 16
 
 
@@ -30,7 +30,7 @@ def _digest(path: Path, payload: bytes) -> bytes:
 def read_checksummed(path: Path) -> bytes | None:
     """Read a file's payload; None where there is no file. Raises ChecksumError."""
     try:
-        data = read_bytes(path, MOST_BYTES)
+        data = read_bytes(path, MAX_BYTES)
     except FileNotFoundError:
         return None
     except OSError as error:

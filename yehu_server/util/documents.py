@@ -19,7 +19,7 @@ from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, why
 from yehu_server.util.parsing import KeyPath, line_at, lines_of, parse_json, parse_toml
 from yehu_server.util.values import brief
 
-MOST_ERRORS = 50  # searching for a similar name takes milliseconds each
+MAX_ERRORS = 50  # searching for a similar name takes milliseconds each
 MANY = sys.maxsize
 _LINE = re.compile(r"\bline ([0-9]+)")
 _DOTTED = re.compile(r"[\w.-]+")

@@ -23,7 +23,7 @@ MAX_LINE_BYTES = 1 << 20  # the first line of a capture has the bowing tables of
 MAX_SETTINGS_BYTES = 2**20  # for files that are read while the instrument plays
 # Names that come over the network: no path, no hidden file.
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
-MOST_SHOWN = 40  # characters of other names in errors
+MAX_SHOWN = 40  # characters of other names in errors
 
 
 def open_at_once(path: str, flags: int) -> int:
@@ -105,7 +105,7 @@ def inside(folder: Path, name: str, ending: str = "") -> Path:
     Raises OutputError where it is no plain name, or a symbolic link that leads out of the folder.
     """
     if not PLAIN_NAME.fullmatch(name):
-        shown = name if len(name) <= MOST_SHOWN else f"{name[:MOST_SHOWN]}..."
+        shown = name if len(name) <= MAX_SHOWN else f"{name[:MAX_SHOWN]}..."
         raise OutputError(f"{shown!r} is not a plain name of letters, digits, . _ - and spaces")
     path = folder / f"{name}{ending}"
     # A dangling link too: writing through it would create the file it names.

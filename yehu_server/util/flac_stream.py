@@ -17,7 +17,7 @@ from yehu_server.util.files import write_all
 from yehu_server.util.subtypes import SUBTYPES
 from yehu_server.util.wav_stream import check_shape
 
-MOST_CHANNELS = 8
+MAX_CHANNELS = 8
 SYNC = b"\xff\xf8"  # first bytes of a block of fixed size
 HEADER_BYTES = 42  # of the file up to the end of STREAMINFO
 BLOCK_FRAMES = slice(10, 12)  # largest number of frames of a block
@@ -28,7 +28,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class FlacStream:
-    """Writes a FLAC file of 1 to `MOST_CHANNELS` channels; see `wav_stream.WavStream`.
+    """Writes a FLAC file of 1 to `MAX_CHANNELS` channels; see `wav_stream.WavStream`.
 
     By the format, more than two channels belong to speakers around the listener.
     """

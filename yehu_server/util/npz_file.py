@@ -16,7 +16,7 @@ from yehu_server.util.files import open_regular
 T = TypeVar("T")
 
 # What a file may claim, so that a small one cannot fill the memory: results are noise, mostly.
-LEAST_CLAIM, MOST_RATIO = 2**26, 30  # bytes; times the bytes of the file
+MIN_CLAIM, MAX_RATIO = 2**26, 30  # bytes; times the bytes of the file
 
 
 def read_npz(path: Path, build: Callable[[dict[str, Any]], T], what: str) -> T:
@@ -40,7 +40,7 @@ def _check_sizes(file: BinaryIO) -> None:
     """Refuse an archive that claims to hold much more than results in so many bytes do."""
     with zipfile.ZipFile(file) as archive:
         claimed = sum(entry.file_size for entry in archive.infolist())
-    most = max(LEAST_CLAIM, MOST_RATIO * os.fstat(file.fileno()).st_size)
+    most = max(MIN_CLAIM, MAX_RATIO * os.fstat(file.fileno()).st_size)
     if claimed > most:
         raise ValueError("it claims to hold more than it can")
     file.seek(0)

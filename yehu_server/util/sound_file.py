@@ -18,7 +18,7 @@ from yehu_server.util.flac_stream import FlacStream
 from yehu_server.util.subtypes import FORMATS, SUBTYPES
 from yehu_server.util.wav_stream import WavStream
 
-MOST_CHANNELS = {"wav": wav_stream.MOST_CHANNELS, "flac": flac_stream.MOST_CHANNELS}
+MAX_CHANNELS = {"wav": wav_stream.MAX_CHANNELS, "flac": flac_stream.MAX_CHANNELS}
 RENDERED = "yehu-server render"  # software named in a rendered file, which may be replaced
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
@@ -32,7 +32,7 @@ class SoundWriter:
     `format_name` ("wav" or "flac").
     `subtype`: one of `SUBTYPES`.
     `software`: named in the file as its maker.
-    `channels`: 1 to `MOST_CHANNELS` of the format.
+    `channels`: 1 to `MAX_CHANNELS` of the format.
 
     Raises OutputError, from all methods too; what was written before stays valid.
     """
@@ -72,7 +72,7 @@ class SoundWriter:
         """Append samples [shape=(frames,) of one channel, or (frames, channels); full scale 1]."""
         self.frames += len(samples)
         if self._limit is not None and self.frames > self._limit:
-            instead = "; use FLAC" if self._channels <= flac_stream.MOST_CHANNELS else ""
+            instead = "; use FLAC" if self._channels <= flac_stream.MAX_CHANNELS else ""
             raise OutputError(f"{self._target}: too long for a WAV file (4 GiB){instead}")
         highest, lowest = samples.max(initial=0.0), samples.min(initial=0.0)
         self.peak = max(self.peak, float(highest), -float(lowest))
@@ -113,7 +113,7 @@ def check_format(format_name: str, subtype: str, channels: int = 1) -> None:
     """Refuse (OutputError) a subtype or a number of channels that a format does not have."""
     if format_name not in SUBTYPES[subtype].files:
         raise OutputError(f"a {format_name} file cannot hold {subtype} samples; use 16 or 24")
-    most = MOST_CHANNELS[format_name]
+    most = MAX_CHANNELS[format_name]
     if not 1 <= channels <= most:
         raise OutputError(f"a {format_name} file holds 1 to {most} channels, not {channels}")
 
@@ -135,7 +135,7 @@ def sound_file(
     `format_name` ("wav" or "flac").
     `subtype`: one of `SUBTYPES`.
     `may_replace`: called with the target where a file is there; returns whether to replace it.
-    `channels`: 1 to `MOST_CHANNELS` of the format.
+    `channels`: 1 to `MAX_CHANNELS` of the format.
     """
     with replacing(target, may_replace) as partial, io.FileIO(partial, "w") as file:
         form = (rate, format_name, subtype, RENDERED)

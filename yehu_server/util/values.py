@@ -8,7 +8,7 @@ from typing import Any
 
 from yehu_server.errors import ParameterError, did_you_mean
 
-MOST_SHOWN = 80  # characters of a value in an error
+MAX_SHOWN = 80  # characters of a value in an error
 
 
 def number(value: Any, lo: float = -math.inf, hi: float = math.inf, unit: str = "") -> float:
@@ -76,4 +76,4 @@ def brief(value: Any, text_of: Callable[[Any], str] = repr) -> str:
         text = text_of(value)
     except ValueError:  # more digits than Python prints
         return "a very large number"
-    return text if len(text) <= MOST_SHOWN else f"{text[: MOST_SHOWN - 3]}..."
+    return text if len(text) <= MAX_SHOWN else f"{text[: MAX_SHOWN - 3]}..."

@@ -18,7 +18,7 @@ import numpy as np
 from yehu_server.util.files import write_all
 from yehu_server.util.subtypes import SUBTYPES
 
-MOST_CHANNELS = 64
+MAX_CHANNELS = 64
 PCM, IEEE_FLOAT, EXTENSIBLE = 1, 3, 0xFFFE
 SUBFORMAT = bytes.fromhex("000000001000800000aa00389b71")  # of a format's number: the GUID's rest
 NO_SPEAKERS = 0  # the channels belong to no particular speakers
@@ -33,7 +33,7 @@ class WavStream:
     `file`: a new one, unbuffered.
     `subtype`: one of `SUBTYPES`.
     `software`: named in the file as its maker; nothing by default.
-    `channels`: 1 to `MOST_CHANNELS`.
+    `channels`: 1 to `MAX_CHANNELS`.
 
     Raises OSError, from all methods too; what was written before stays valid.
     """

@@ -25,7 +25,7 @@ LATER = 60  # searches
 WATCH_EVERY_S = 0.1
 STALLED = 10  # of these, with nothing new from an input: it is lost, though it does not say so
 CLOSE_WITHIN_S = 0.5
-MOST_CHANNELS = 64
+MAX_CHANNELS = 64
 
 
 class Stream:
@@ -170,7 +170,7 @@ def _search(
                 "found",
                 name=device.full_name,
                 rate=device.rate,
-                channels=min(device.channels, MOST_CHANNELS),
+                channels=min(device.channels, MAX_CHANNELS),
             )
             return device
         try:

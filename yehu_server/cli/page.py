@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import io
 import tempfile
 import webbrowser
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -22,10 +22,8 @@ from yehu_server.cli.arguments import add_command, add_folder, add_options
 from yehu_server.cli.converters import port
 from yehu_server.cli.terminal import print_result
 
-QUIET = 4  # modules of white around it (ISO/IEC 18004)
-# Black and white of the 256 colours, which themes leave alone; and back.
-BLACK_ON_WHITE, PLAIN = "\x1b[38;5;16;48;5;231m", "\x1b[0m"
-HALVES = {(0, 0): " ", (1, 0): "▀", (0, 1): "▄", (1, 1): "█"}  # by the upper and the lower module
+# White and black of the 256 colours, which themes leave alone; and back.
+WHITE_ON_BLACK, PLAIN = "\x1b[38;5;231;48;5;16m", "\x1b[0m"
 
 
 def show(text: str, stream: TextIO) -> None:
@@ -44,11 +42,9 @@ def drawn(text: str) -> list[str]:
     """
     import segno
 
-    rows = [bytes(row) for row in segno.make_qr(text).matrix_iter(border=QUIET)]
-    white = bytes(len(rows[0]))
-    pairs = zip_longest(rows[::2], rows[1::2], fillvalue=white)
-    halves = ("".join(map(HALVES.__getitem__, zip(*pair, strict=True))) for pair in pairs)
-    return [f"{BLACK_ON_WHITE}{line}{PLAIN}" for line in halves]
+    lines = io.StringIO()
+    segno.make_qr(text).terminal(lines, compact=True)  # its signs are what is white
+    return [f"{WHITE_ON_BLACK}{line}{PLAIN}" for line in lines.getvalue().splitlines()]
 
 
 PORT = 8010

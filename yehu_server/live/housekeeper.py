@@ -6,11 +6,10 @@ goes wrong is reported.
 
 from __future__ import annotations
 
+import math
 import threading
 import time
-from collections import defaultdict
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 
 from yehu_server.core.engine.ensemble import Ensemble
@@ -20,7 +19,6 @@ from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.retry import run_forever
-from yehu_server.util.token_bucket import TokenBucket
 
 # Modification time, size and inode of each file; None where there is no file.
 Marks = dict[Path, tuple[int, int, int] | None]
@@ -84,72 +82,28 @@ def _mark(file: Path) -> tuple[int, int, int] | None:
     return status.st_mtime_ns, status.st_size, status.st_ino
 
 
-LINES_PER_S, LINES_AT_ONCE = 0.1, 1.0  # of each count
-UNDER_RUNS_EVERY_S = 60.0
-HINT = "a larger --blocksize, or --latency high, leaves more time"
+REPORT_EVERY_S, UNDER_RUNS_EVERY_S = 10.0, 60.0
 POLL_EVERY_S = 0.5  # of files of mappings and presets, and of counters
 TURN_EVERY_S = 0.05
 
 
 class CounterReport:
-    """Reports counts that grow: at once, and then at most every ten seconds.
+    """Reports counts that grow, each at once and then in periods.
 
     `on_message`: called with each line.
     """
 
     def __init__(self, on_message: Callable[[str], None]) -> None:
         self._on_message = on_message
-        self._reported: dict[str, int] = {}
-        self._buckets: dict[str, TokenBucket] = defaultdict(
-            partial(TokenBucket, LINES_PER_S, LINES_AT_ONCE)
-        )
+        self._reported: dict[str, tuple[int, float]] = {}  # the last count, and when
 
-    def report(self, counts: dict[str, int]) -> None:
-        """Report counts that have grown since they were last reported.
-
-        `counts`: each by a phrase for what is counted.
-        """
+    def report(self, what: str, count: int, every_s: float = REPORT_EVERY_S) -> None:
+        """Report a count if it has grown, at most once in `every_s`; `what` is counted."""
+        before, at = self._reported.get(what, (0, -math.inf))
         now = time.monotonic()
-        for what, count in counts.items():
-            if count > self._reported.get(what, 0) and self._buckets[what].takes(now):
-                self._reported[what] = count
-                self._on_message(f"{what} ({count} so far)")
-
-
-class UnderRunReport:
-    """Reports under-runs of the device and missed deadlines.
-
-    `on_message`: called with each line.
-    """
-
-    def __init__(self, on_message: Callable[[str], None]) -> None:
-        self._on_message = on_message
-        self._began = time.monotonic()
-        self._reported_at: float | None = None  # of the last line
-        self._reported = 0
-
-    def report(self, under_runs: int) -> None:
-        """Report under-runs, if there are more: the first at once, then those of each minute."""
-        now = time.monotonic()
-        is_due = self._reported_at is None or now >= self._reported_at + UNDER_RUNS_EVERY_S
-        if under_runs <= self._reported or not is_due:
-            return
-        new = _counted(under_runs - self._reported, "under-run")
-        since = "" if self._reported_at is None else f" in the last {now - self._reported_at:.0f} s"
-        self._on_message(f"{new}{since}: the sound had gaps ({under_runs} so far); {HINT}")
-        self._reported_at, self._reported = now, under_runs
-
-    def sum_up(self, under_runs: int, missed: int) -> None:
-        """Report all at the end, if there were any."""
-        if under_runs or missed:
-            counts = (
-                f"{_counted(under_runs, 'under-run')} and {_counted(missed, 'missed deadline')}"
-            )
-            self._on_message(f"{counts} in {time.monotonic() - self._began:.0f} s")
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
+        if count > before and now >= at + every_s:
+            self._reported[what] = count, now
+            self._on_message(f"{what} ({count} so far)")
 
 
 class Housekeeper:
@@ -181,7 +135,7 @@ class Housekeeper:
         self._on_remap, self._on_message = on_remap, on_message
         self._osc_drops = osc_drops
         self._counters = CounterReport(on_message)
-        self._under_runs = UnderRunReport(on_message)
+        self._began = time.monotonic()
         self._ending = threading.Event()
         self._next_poll = 0.0  # monotonic s
         turns = (self._turn, self._ending, TURN_EVERY_S, "beside playing", on_message)
@@ -200,7 +154,11 @@ class Housekeeper:
         """End the thread, and close the capture."""
         self._ending.set()
         self._thread.join()
-        self._under_runs.sum_up(*self._gaps())
+        meters = self._ensemble.first.meters()
+        under_runs, missed = int(meters["underruns"]), int(meters["missed"])
+        if under_runs or missed:
+            counts = f"under-runs: {under_runs}, missed deadlines: {missed}"
+            self._on_message(f"{counts}, in {time.monotonic() - self._began:.0f} s")
         if self.capture is not None:
             self.capture.close()
 
@@ -208,11 +166,6 @@ class Housekeeper:
     def is_whole(self) -> bool:
         """Whether nothing is missing in the capture."""
         return self.capture is None or self.capture.is_whole
-
-    def _gaps(self) -> tuple[int, int]:
-        """Number of under-runs and of missed deadlines so far."""
-        meters = self._ensemble.first.meters()
-        return int(meters["underruns"]), int(meters["missed"])
 
     def _turn(self) -> None:
         self._delay.update()
@@ -223,20 +176,25 @@ class Housekeeper:
             self.capture.keep_up()
         if time.monotonic() > self._next_poll:
             self._next_poll = time.monotonic() + POLL_EVERY_S
-            self._counters.report(
-                {
-                    "the model lost its state and was put back to rest": self._ensemble.lost_states,
-                    "events were dropped, as the ring was full or their time too far ahead": sum(
-                        instrument.dropped_events for instrument in self._ensemble.instruments
-                    ),
-                    "OSC packets were dropped by the system": self._osc_drops(),
-                }
-            )
-            self._under_runs.report(self._gaps()[0])
+            self._report_counts()
             for player, watch in self._watches:
                 self._follow(player, watch)
             for player in self._players:
                 player.know_programs()
+
+    def _report_counts(self) -> None:
+        ensemble, report = self._ensemble, self._counters.report
+        dropped = sum(instrument.dropped_events for instrument in ensemble.instruments)
+        under_runs = int(ensemble.first.meters()["underruns"])
+        report("the model lost its state and was put back to rest", ensemble.lost_states)
+        report("events were dropped, as the ring was full or their time too far ahead", dropped)
+        report("OSC packets were dropped by the system", self._osc_drops())
+        report(
+            "under-runs: the sound had gaps; a larger --blocksize, or --latency high, leaves more "
+            "time",
+            under_runs,
+            UNDER_RUNS_EVERY_S,
+        )
 
     def _follow(self, player: Player, watch: MappingWatch) -> None:
         """Give a player its mapping anew where the files have changed and are right."""

@@ -10,7 +10,7 @@ import segno
 from yehu_server import cli
 from yehu_server.cli import serve_options
 from yehu_server.cli.config import parse
-from yehu_server.cli.page import BLACK_ON_WHITE, PLAIN, QUIET, drawn
+from yehu_server.cli.page import PLAIN, WHITE_ON_BLACK, drawn
 from yehu_server.cli.report import page_for_phones
 from yehu_server.cli.serve_options import options_of
 from yehu_server.live.page.guests import ROLES, Guests
@@ -72,15 +72,16 @@ def test_the_address_for_phones_is_one_that_they_reach_with_the_pin() -> None:
 
 # ---------------------------------------------------------------- the QR code
 
-# As Unicode names them: upper half, lower half, full block.
-SHOWN = {" ": (0, 0), "\u2580": (1, 0), "\u2584": (0, 1), "\u2588": (1, 1)}
+QUIET = 4  # modules of white around it (ISO/IEC 18004)
+# Upper half, lower half, full block, as Unicode names them, are white.
+SHOWN = {" ": (1, 1), "\u2580": (0, 1), "\u2584": (1, 0), "\u2588": (0, 0)}
 
 
 def modules(lines: list[str]) -> list[list[int]]:
     """The black modules, as a terminal shows them."""
     rows = []
     for line in lines:
-        signs = line.removeprefix(BLACK_ON_WHITE).removesuffix(PLAIN)
+        signs = line.removeprefix(WHITE_ON_BLACK).removesuffix(PLAIN)
         rows += [[SHOWN[sign][half] for sign in signs] for half in (0, 1)]
     return rows
 
@@ -89,6 +90,7 @@ def test_its_modules_are_those_of_the_code_within_a_quiet_zone() -> None:
     expected = [list(row) for row in segno.make_qr(URL).matrix_iter(border=QUIET)]
     found = modules(drawn(URL))
     assert found[: len(expected)] == expected
-    assert not any(map(any, found[len(expected) :]))
     assert not any(map(any, found[:QUIET]))
-    assert not any(row[0] or row[QUIET - 1] or row[-1] or row[-QUIET] for row in found)
+    assert not any(
+        row[0] or row[QUIET - 1] or row[-1] or row[-QUIET] for row in found[: len(expected)]
+    )

@@ -82,7 +82,7 @@ def test_an_error_in_the_file_names_file_and_line(subtests, file, refused):
         ("blocksize = 0", ":2: blocksize: 0 is not within 1 to 8192 frames"),
         ("http = false", ":2: http: expected text or a number, got False"),
         ("watch = 1", ":2: watch: expected true or false, got 1"),
-        ("range = 'fold'", ":2: range: 'fold' is not one of transpose, clamp, skip"),
+        ("range = 'fold'", ":2: range: invalid choice: 'fold' (choose from"),
         ("\n[set]\n'/playing/volume' = []", ":3: set: expected text or a number"),
     ]:
         with subtests.test(text[:30]):

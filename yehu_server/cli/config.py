@@ -44,13 +44,22 @@ def parse(argv: Sequence[str], parser: Parser) -> argparse.Namespace:
 def read_config(path: Path, command: Parser) -> argparse.Namespace:
     """Read a file's options, checked as the command's own; ParameterError names the line."""
     namespace = argparse.Namespace()
+
+    def parse_entry(name: str, value: Any) -> None:
+        try:
+            command.parse_known_args(_words(command, name, value), namespace)
+        except argparse.ArgumentError as error:
+            raise ParameterError(error.message) from error
+
     document = Document(path, "a TOML file").read(path)
-    document.toml().each(lambda name, value: _set(command, namespace, name, value))
+    command.exit_on_error = False
+    document.toml().each(parse_entry)
+    command.exit_on_error = True
     return namespace
 
 
-def _set(command: Parser, namespace: argparse.Namespace, name: str, value: Any) -> None:
-    """Set an option by the value that a file has for it."""
+def _words(command: Parser, name: str, value: Any) -> list[str]:
+    """The words of the command line that give an option the value of a file's entry."""
     option = f"--{name.replace('_', '-')}"
     if option in NOT_IN_FILES:
         raise ParameterError(f"a config file {NOT_IN_FILES[option]}")
@@ -58,37 +67,17 @@ def _set(command: Parser, namespace: argparse.Namespace, name: str, value: Any) 
     if action is None:
         known = [other.removeprefix("--") for other in command.options]
         raise ParameterError(f"unknown option{did_you_mean(name, known)}")
-    if action.nargs == "?" and isinstance(value, bool):  # an option that may have a value
-        if value:
-            action(command, namespace, action.const, option)
-        return
-    if action.nargs == 0:
-        _set_flag(command, namespace, action, option, value)
-        return
-    values = [value]
-    if isinstance(value, list):
-        values = value
-    elif isinstance(value, dict):  # such as [set]
+    if action.nargs == 0 or (action.nargs == "?" and isinstance(value, bool)):
+        if flag(value):
+            return [option]
+        opposites = [other for other in action.option_strings if other != option]
+        return opposites if isinstance(action, argparse.BooleanOptionalAction) else []
+    values = value if isinstance(value, list) else [value]
+    if isinstance(value, dict):  # such as [set]
         values = [f"{key}={_text(entry)}" for key, entry in value.items()]
     if len(values) > MAX_VALUES:
         raise ParameterError(f"more than {MAX_VALUES} values")
-    for each in values:
-        action(command, namespace, _converted(action, _text(each)), option)
-
-
-def _set_flag(
-    command: Parser,
-    namespace: argparse.Namespace,
-    action: argparse.Action,
-    option: str,
-    value: Any,
-) -> None:
-    if not flag(value):  # the opposite, where there is one; else the option is not given
-        opposite = isinstance(action, argparse.BooleanOptionalAction)
-        others = [other for other in action.option_strings if other != option]
-        option = others[0] if opposite else ""
-    if option:
-        action(command, namespace, [], option)
+    return [f"{option}={_text(each)}" for each in values]
 
 
 def _text(value: Any) -> str:
@@ -96,16 +85,3 @@ def _text(value: Any) -> str:
     if isinstance(value, str | int | float) and not isinstance(value, bool):
         return str(value)
     raise ParameterError(f"expected text or a number, got {brief(value)}")
-
-
-def _converted(action: argparse.Action, text: str) -> Any:
-    """A value converted and checked as argparse does."""
-    try:
-        value = action.type(text) if callable(action.type) else text
-    except (argparse.ArgumentTypeError, ValueError) as error:
-        raise ParameterError(str(error)) from error
-    if action.choices is not None and value not in action.choices:
-        known = list(map(str, action.choices))
-        hint = did_you_mean(text, known)
-        raise ParameterError(f"{brief(text)} is not one of {', '.join(known)}{hint}")
-    return value

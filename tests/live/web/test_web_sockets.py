@@ -203,20 +203,24 @@ def test_one_who_reads_nothing_holds_up_nobody(connect, shared_web, until):
 
 
 def test_what_a_peer_does_not_take_is_dropped_and_counted():
-    traffic = WebTraffic()
-    asked = []
-    loop = SimpleNamespace(call_soon_threadsafe=asked.append)
-    peer = WebPeer("deaf", loop, traffic)
+    traffic, calls, sent, unsent = WebTraffic(), [], [], 0
+    transport = SimpleNamespace(
+        is_closing=lambda: False, get_write_buffer_size=lambda: unsent, write=sent.append
+    )
+    loop = SimpleNamespace(call_soon_threadsafe=lambda *call: calls.append(call))
+    peer = WebPeer("deaf", transport, loop, traffic)
     for _ in range(3 * limits.UNSENT // 1000):
         peer.send(bytes(1000))
-    assert len(asked) == 1  # its thread is woken once
-    kept = 0
-    while peer._next() is not None:
-        kept += 1
-    assert kept == limits.UNSENT // 1000
-    assert traffic.unsent == 3 * limits.UNSENT // 1000 - kept
-    peer.send(b"again")
-    assert len(asked) == 2
+    assert len(calls) == limits.UNSENT // 1000 + 1  # the web's thread takes none
+    assert traffic.unsent == 3 * limits.UNSENT // 1000 - len(calls)
+    assert not peer.takes_more
+    for call, packet in calls:
+        call(packet)
+    assert len(sent) == len(calls)
+    assert peer.takes_more
+    unsent = limits.UNSENT + 1  # the other end reads none
+    peer.send(b"lost")
+    assert len(sent) == len(calls)
 
 
 def test_one_who_vanishes_is_forgotten_with_all_it_asked_for(shared_web, port, until):

@@ -25,34 +25,9 @@ from yehu_server.core.player.commands import EXPRESS, HOLD, KINDS, RAMP, WRITE
 from yehu_server.live import limits
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
+from yehu_server.live.web.frames import TEXT, frame_of, write
 from yehu_server.params.table import TABLE
 from yehu_server.util.token_bucket import TokenBucket
-
-TEXT, BINARY = 0x81, 0x82  # whole messages
-SHORT, MIDDLE = 126, 1 << 16  # payloads below have lengths of one and of two bytes
-
-
-def frame_of(payload: bytes, kind: int = BINARY) -> bytes:
-    """A message as the server sends it (RFC 6455, section 5.2)."""
-    size = len(payload)
-    if size < SHORT:
-        head = struct.pack(">BB", kind, size)
-    elif size < MIDDLE:
-        head = struct.pack(">BBH", kind, 126, size)
-    else:
-        head = struct.pack(">BBQ", kind, 127, size)
-    return head + payload
-
-
-def write(transport: asyncio.WriteTransport | None, frame: bytes, most_unsent: int) -> bool:
-    """Write a frame, unless so many bytes wait to be sent already; return whether it was."""
-    if transport is None or transport.is_closing():
-        return False
-    if transport.get_write_buffer_size() > most_unsent:
-        return False
-    transport.write(frame)
-    return True
-
 
 SNAPSHOT, COMMANDS = 0.0, 1.0
 COMMAND = 5  # numbers: frame or NOW, kind, index, value, other

@@ -5,8 +5,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-import threading
-from collections import deque
 from typing import Any
 
 from aiohttp import WSMsgType, web
@@ -16,6 +14,7 @@ from yehu_server.live import limits
 from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.receiving import OscPorts
+from yehu_server.live.web.frames import TEXT, frame_of, write
 from yehu_server.live.web.query import is_listenable
 from yehu_server.params.table import PREFIX
 
@@ -25,64 +24,54 @@ BEHIND_S = 0.005
 
 
 class WebPeer:
-    """A WebSocket, for the threads that send to it.
+    """A WebSocket, which the OSC thread sends packets to, and the web's thread writes them.
 
-    Packets wait here until the web's thread writes them. While the other end does not read, further
-    packets are dropped, and no other client is delayed.
+    While the other end does not read, further ones are dropped, and no other client is delayed.
     """
 
-    def __init__(self, host: str, loop: asyncio.AbstractEventLoop, traffic: WebTraffic) -> None:
+    def __init__(
+        self,
+        host: str,
+        transport: asyncio.WriteTransport,
+        loop: asyncio.AbstractEventLoop,
+        traffic: WebTraffic,
+    ) -> None:
         self.host = host
+        self._transport = transport
         self._loop = loop
         self._traffic = traffic
-        self._turn = threading.Lock()
-        self._queue: deque[bytes | str] = deque()
-        self._unsent_bytes = 0
-        self._is_awake = False
-        self._woken = asyncio.Event()
+        self._sent, self._passed_on = 0, 0  # bytes, each counted by one thread
+
+    @property
+    def _unsent_bytes(self) -> int:
+        return self._sent - self._passed_on + self._transport.get_write_buffer_size()
 
     @property
     def takes_more(self) -> bool:
         """See `Peer`."""
         return self._unsent_bytes < limits.UNSENT // 2
 
-    def send(self, packet: bytes | str) -> None:
-        """See `Peer`; text goes out as text."""
-        with self._turn:
-            if self._unsent_bytes + len(packet) > limits.UNSENT:
-                self._traffic.unsent += 1
-                return
-            self._queue.append(packet)
-            self._unsent_bytes += len(packet)
-            wake, self._is_awake = not self._is_awake, True
-        if wake:
-            with contextlib.suppress(RuntimeError):  # the loop has ended
-                self._loop.call_soon_threadsafe(self._woken.set)
+    def send(self, packet: bytes) -> None:
+        """See `Peer`."""
+        if self._unsent_bytes > limits.UNSENT:
+            self._traffic.unsent += 1
+            return
+        self._sent += len(packet)
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(self._pass_on, packet)
+
+    def _pass_on(self, packet: bytes) -> None:
+        self._passed_on += len(packet)
+        self.write(frame_of(packet))
+
+    def write(self, frame: bytes) -> None:
+        """Write a frame; for the web's thread."""
+        self._traffic.unsent += not write(self._transport, frame, limits.UNSENT)
 
     def at(self, port: int) -> WebPeer:
         """See `Peer`: a connection has no other port."""
         del port
         return self
-
-    async def write(self, socket: web.WebSocketResponse) -> None:
-        """Write packets as they are sent, until the connection ends."""
-        with contextlib.suppress(ConnectionError):
-            while await self._woken.wait():
-                self._woken.clear()
-                while (packet := self._next()) is not None:
-                    if isinstance(packet, str):
-                        await socket.send_str(packet)
-                    else:
-                        await socket.send_bytes(packet)
-
-    def _next(self) -> bytes | str | None:
-        with self._turn:
-            if not self._queue:
-                self._is_awake = False
-                return None
-            packet = self._queue.popleft()
-            self._unsent_bytes -= len(packet)
-            return packet
 
 
 class WebSockets:
@@ -103,10 +92,12 @@ class WebSockets:
             timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=limits.WEB_FRAME, compress=False
         )
         await socket.prepare(request)
-        peer = WebPeer(str(request.remote), asyncio.get_running_loop(), self._traffic)
+        if request.transport is None:  # it has gone already
+            return socket
+        loop = asyncio.get_running_loop()
+        peer = WebPeer(str(request.remote), request.transport, loop, self._traffic)
         self._open[socket] = peer
         self._traffic.web_sockets += 1
-        writing = asyncio.ensure_future(peer.write(socket))
         try:
             async for frame in socket:
                 # The sender waits while its packets wait; nothing is lost.
@@ -120,15 +111,12 @@ class WebSockets:
             del self._open[socket]
             self._traffic.web_sockets -= 1
             self._osc.leave(peer)
-            writing.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await writing
         return socket
 
     def broadcast(self, command: str, data: Any) -> None:
         """Send a command to all clients."""
         for peer in self._open.values():
-            peer.send(_command(command, data))
+            peer.write(_command(command, data))
 
     async def close(self) -> None:
         """Close all WebSockets."""
@@ -139,14 +127,14 @@ class WebSockets:
         try:
             command, address = _read(text, self._parts)
         except RefusedError as error:
-            peer.send(_command("ERROR", str(error)))
+            peer.write(_command("ERROR", str(error)))
             return
         act = self._clients.listen if command == "LISTEN" else self._clients.ignore
         self._osc.call_soon(lambda: act(peer, address))
 
 
-def _command(command: str, data: Any) -> str:
-    return json.dumps({"COMMAND": command, "DATA": data})
+def _command(command: str, data: Any) -> bytes:
+    return frame_of(json.dumps({"COMMAND": command, "DATA": data}).encode(), TEXT)
 
 
 def _read(text: str, parts: int) -> tuple[str, str]:

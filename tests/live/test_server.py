@@ -12,7 +12,6 @@ from wire import f32
 from yehu_server.errors import DeviceError
 from yehu_server.live.network import Allowed
 from yehu_server.live.osc.open_sockets import open_both
-from yehu_server.live.web.server import listen
 
 HOST = "127.0.0.1"
 
@@ -98,6 +97,8 @@ def test_others_are_not_named(kind) -> None:
         port = other.getsockname()[1]
         with pytest.raises(DeviceError, match=r"in use$"):
             open_both(HOST, port)
-        if kind == socket.SOCK_STREAM:
-            with pytest.raises(DeviceError, match=r"in use$"):
-                listen("OSCQuery", HOST, port)
+
+
+def test_a_running_server_is_named(live) -> None:
+    with pytest.raises(DeviceError, match="in use by a running yehu-server"):
+        open_both(HOST, live.server.osc.port)

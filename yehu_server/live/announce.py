@@ -10,10 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from yehu_server.live.network import lan_address, plain
-from yehu_server.live.osc.open_sockets import NAME
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web.loop_thread import LoopThread
-from yehu_server.live.web.server import WebServer
+from yehu_server.live.web.server import NAME, WebServer
 from yehu_server.util.files import why
 from yehu_server.util.retry import Backoff
 

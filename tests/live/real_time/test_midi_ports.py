@@ -22,7 +22,7 @@ from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
 from yehu_server.live.midi.input_process import Inputs
 from yehu_server.live.midi.ports import MidiOptions, MidiPorts
-from yehu_server.live.midi.routes import Router, is_wanted, stable_names
+from yehu_server.live.midi.routes import Router, StableNames, is_wanted
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.params.table import FINGERS
@@ -344,7 +344,7 @@ def test_a_port_has_the_same_name_whenever_it_is_there(subtests):
         (["琴 1:琴 MIDI 1 20:0"], ["琴 1:琴 MIDI 1"]),
     ]:
         with subtests.test(names=names, stable=stable):
-            assert stable_names(names) == stable
+            assert StableNames().of(names) == stable
 
 
 def test_ports_are_wanted_by_words_of_their_name(subtests):

@@ -18,7 +18,7 @@ from yehu_server.core.midi.packing import MOST_BYTES
 from yehu_server.errors import ParameterError
 from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
 from yehu_server.live.midi.jack_watch import JackWatch
-from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted, stable_names
+from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted
 from yehu_server.util.processes import Message, Parent
 
 POLL_EVERY_S = 0.5
@@ -239,7 +239,7 @@ def list_inputs() -> tuple[str, list[str], str]:
     client, problem = open_client(None)
     if client is None:
         return "", [], problem
-    return api_name(client.get_current_api()), stable_names(client.get_ports()), ""
+    return api_name(client.get_current_api()), StableNames().of(client.get_ports()), ""
 
 
 def _number(api: str) -> int:

@@ -50,11 +50,6 @@ class StableNames:
         return [named[key] for key in present]
 
 
-def stable_names(names: Iterable[str]) -> list[str]:
-    """The names of ports that are all seen for the first time; see `StableNames`."""
-    return StableNames().of(names)
-
-
 def is_wanted(name: str, patterns: Sequence[str]) -> bool:
     """Whether to open a port: by words of its name; without patterns, any but a through port."""
     if not patterns:

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import http.client
-import json
 import socket
 import struct
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
-from yehu_server.errors import DeviceError
+from yehu_server.errors import DeviceError, YehuError
 from yehu_server.live import limits
 from yehu_server.live.network import format_address
-from yehu_server.live.osc.packets import PacketError, pack, unpack
-from yehu_server.params.table import PREFIX
+from yehu_server.live.osc.command_client import OscClient
 from yehu_server.util.files import why
 
 TRIES_FOR_A_PORT = 20
@@ -25,8 +22,7 @@ STAMP, COUNT = struct.Struct("@ll"), struct.Struct("@I")  # struct timespec, of 
 CONTROL_BYTES = socket.CMSG_SPACE(STAMP.size) + socket.CMSG_SPACE(COUNT.size)
 # Of who is asked at an address in use.
 ANSWERS_WITHIN_S = 0.3
-ANSWER_BYTES = 1 << 16
-NAME = "yehu-server"  # in HOST_INFO of OSCQuery
+BESIDE = "--osc :9010 --http :9011"
 LOCAL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - nothing is bound
 
 
@@ -41,7 +37,7 @@ def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
     except OSError as error:
         raise DeviceError(
             f"OSC: cannot listen at {format_address(host, port)}: {why(error)}"
-            f"{by_whom(error, host, port, plays_at)}"
+            f"{by_whom(error, host, port)}"
         ) from error
 
 
@@ -88,32 +84,11 @@ def stamp_and_drops(controls: Sequence[tuple[int, int, bytes]]) -> tuple[int, in
     return stamp_ns, drops
 
 
-def by_whom(error: OSError, host: str, port: int, asks: Callable[[str, int], bool]) -> str:
-    """What to add to an error of binding: whether a yehu-server is there; else nothing."""
-    if error.errno != errno.EADDRINUSE or not asks(LOCAL.get(host, host), port):
-        return ""
-    return " by a running yehu-server; end it there, or play beside it: --osc :9010 --http :9011"
-
-
-def plays_at(host: str, port: int) -> bool:
-    """Whether a yehu-server answers OSC at an address."""
-    with contextlib.suppress(OSError, PacketError):
-        family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
-        with socket.socket(family, kind) as asking:
-            asking.settimeout(ANSWERS_WITHIN_S)
-            asking.connect(address)
-            asking.send(pack(f"{PREFIX}/ping"))
-            answers = unpack(asking.recv(ANSWER_BYTES))
-            return any(answer.address == f"{PREFIX}/pong" for answer in answers)
-    return False
-
-
-def serves_at(host: str, port: int) -> bool:
-    """Whether a yehu-server answers OSCQuery at an address."""
-    connection = http.client.HTTPConnection(host, port, timeout=ANSWERS_WITHIN_S)
-    with contextlib.suppress(OSError, http.client.HTTPException, ValueError):
-        with contextlib.closing(connection):
-            connection.request("GET", "/?HOST_INFO")
-            answer = json.loads(connection.getresponse().read(ANSWER_BYTES))
-        return isinstance(answer, dict) and str(answer.get("NAME", "")).startswith(NAME)
-    return False
+def by_whom(error: OSError, host: str, port: int) -> str:
+    """What to add to an error of binding: whether a yehu-server answers there; else nothing."""
+    if error.errno == errno.EADDRINUSE:
+        with contextlib.suppress(YehuError), OscClient((LOCAL.get(host, host), port)) as client:
+            client.send("/ping")
+            client.answer("/pong", ANSWERS_WITHIN_S)
+            return f" by a running yehu-server; end it there, or play beside it: {BESIDE}"
+    return ""

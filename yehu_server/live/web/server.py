@@ -24,7 +24,6 @@ from yehu_server.live.network import Address, Allowed, format_address, plain
 from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.call import Call
 from yehu_server.live.osc.clients import Clients
-from yehu_server.live.osc.open_sockets import NAME, by_whom, serves_at
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
 from yehu_server.live.web.access import Connections, check, own_names, serve_http
@@ -38,6 +37,7 @@ log = logging.getLogger(__name__)
 
 HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-store"}
 PARAMETERS = "parameters.html"
+NAME = "yehu-server"  # in HOST_INFO
 PANEL = """
 <li><a href="/panel/">The instrument</a></li>"""
 PAGE = """<!DOCTYPE html>
@@ -202,8 +202,7 @@ def listen(what: str, host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
     except OSError as error:
         where = format_address(host, port)
-        whom = by_whom(error, host, port, serves_at)
-        raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}{whom}") from error
+        raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}") from error
 
 
 def _html(text: str) -> web.Response:

@@ -17,10 +17,9 @@ import re
 import selectors
 import socket
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Protocol
+from dataclasses import dataclass
 
 from pythonosc import slip
 
@@ -115,22 +114,26 @@ def _decoded(frame: bytes) -> bytes:
     return packet
 
 
-class Peer(Protocol):
-    """A sender of OSC, which can be answered."""
+class Peer(ABC):
+    """A sender of OSC, which can be answered.
+
+    `host`: the IP address of its host.
+    """
+
+    host: str
 
     @property
-    def host(self) -> str:
-        """IP address of the host."""
-
-    @property
+    @abstractmethod
     def takes_more(self) -> bool:
         """Whether it may be sent more than it must be."""
 
+    @abstractmethod
     def send(self, packet: bytes) -> None:
         """Send a packet, or drop it where the limit is reached."""
 
-    def at(self, port: int) -> Peer:
-        """A peer at another port of the same host."""
+    def at(self, _port: int) -> Peer:
+        """A peer at another port of the same host; a connection has none."""
+        return self
 
 
 @dataclass
@@ -163,53 +166,54 @@ def answer_bucket(times: int = 1) -> TokenBucket:
     return TokenBucket(times * limits.ANSWERED, times * limits.ANSWERED)
 
 
-@dataclass(frozen=True)
-class UdpPeer:
+class UdpPeer(Peer):
     """A sender of datagrams; bytes that it is sent are taken from each of its buckets."""
 
-    socket: socket.socket = field(compare=False)
-    address: Address
-    traffic: Traffic = field(compare=False)
-    buckets: Sequence[TokenBucket] = field(compare=False)
+    def __init__(
+        self,
+        socket: socket.socket,
+        address: Address,
+        traffic: Traffic,
+        buckets: Sequence[TokenBucket],
+    ) -> None:
+        self.host = address[0]
+        self._socket, self._address = socket, address
+        self._hash = hash(address)  # computed once: each message needs it a dozen times
+        self._traffic, self._buckets = traffic, buckets
 
-    @cached_property
-    def _hash(self) -> int:
-        return hash(self.address)
+    def __eq__(self, other: object) -> bool:
+        """Whether another has the same address."""
+        return isinstance(other, UdpPeer) and other._address == self._address
 
     def __hash__(self) -> int:
-        """Its address's, computed once: each message needs it a dozen times."""
+        """Its address's."""
         return self._hash
-
-    @cached_property
-    def host(self) -> str:
-        """See `Peer`."""
-        return self.address[0]
 
     @property
     def takes_more(self) -> bool:
         """See `Peer`."""
         now = time.monotonic()
-        return all(bucket.left(now) > 0.0 for bucket in self.buckets)
+        return all(bucket.left(now) > 0.0 for bucket in self._buckets)
 
     def send(self, packet: bytes) -> None:
         """See `Peer`."""
         if not self.takes_more:
-            self.traffic.unsent += 1
+            self._traffic.unsent += 1
             return
-        for bucket in self.buckets:
+        for bucket in self._buckets:
             bucket.spend(len(packet))
         try:
-            self.socket.sendto(packet, self.address)
+            self._socket.sendto(packet, self._address)
         except OSError:
-            self.traffic.unsent += 1
+            self._traffic.unsent += 1
 
     def at(self, port: int) -> UdpPeer:
         """See `Peer`; bytes sent there count for this peer too."""
-        address = (self.address[0], port, *self.address[2:])
-        return UdpPeer(self.socket, address, self.traffic, self.buckets)
+        address = (self._address[0], port, *self._address[2:])
+        return UdpPeer(self._socket, address, self._traffic, self._buckets)
 
 
-class TcpPeer:
+class TcpPeer(Peer):
     """A TCP connection.
 
     `watch`: called with the peer when its `events` may have changed.
@@ -278,8 +282,3 @@ class TcpPeer:
         """End the connection once all waiting bytes are sent."""
         self.is_finished = True
         self._watch(self)
-
-    def at(self, port: int) -> TcpPeer:
-        """See `Peer`: a connection has no other port."""
-        del port
-        return self

@@ -35,7 +35,6 @@ log = logging.getLogger(__name__)
 
 AT_ONCE = 512  # datagrams that are read before others are handled
 ACCEPT_AGAIN_S = 1.0
-WARN_AGAIN_S = 1.0
 
 
 class OscPorts:
@@ -57,7 +56,6 @@ class OscPorts:
         self._calls = Calls() if calls is None else calls
         self.call_soon = self._calls.soon
         self._accepts_again: float | None = None  # monotonic s; None: it accepts
-        self._warned = 0.0  # monotonic s
         self._peer = lru_cache(limits.PEERS)(self._new_peer)
         self._to_all = answer_bucket(limits.ANSWERED_TO_ALL_HOSTS)
         self._to_host = lru_cache(limits.PEERS)(
@@ -123,13 +121,6 @@ class OscPorts:
             except Exception:  # a defect of the server must not end the thread
                 self.traffic.failures += 1
                 log.exception("OSC: a message could not be handled")
-
-    def _warn(self, what: str) -> None:
-        """Log what a peer did wrong, as a warning once a second at most."""
-        now = time.monotonic()
-        level = logging.WARNING if now > self._warned + WARN_AGAIN_S else logging.DEBUG
-        log.log(level, "OSC: %s", what)
-        self._warned = now
 
     def _end(self, peer: Peer) -> Iterator[None]:
         """Drop a peer that hung up, once all of its packets are handled."""
@@ -207,7 +198,9 @@ class OscPorts:
         those = filter(self._is_silent, among)
         silent = min(those, key=lambda one: one.last_packet_s, default=None)
         if silent is not None:
-            self._warn(f"{silent.name}: closed for another connection, as it was silent for long")
+            log.warning(
+                "OSC: %s: closed for another connection, being silent for long", silent.name
+            )
             silent.cut_off()
         return silent is not None
 
@@ -250,7 +243,7 @@ class OscPorts:
                 yield
         except FramingError as error:
             self.traffic.refused += 1
-            self._warn(f"{peer.name}: {error}; connection closed")
+            log.warning("OSC: %s: %s; connection closed", peer.name, error)
             self.drain_and_close(peer)
 
     def drain_and_close(self, peer: TcpPeer) -> None:

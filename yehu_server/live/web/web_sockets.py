@@ -11,7 +11,7 @@ from aiohttp import WSMsgType, web
 
 from yehu_server.errors import RefusedError, shortened
 from yehu_server.live import limits
-from yehu_server.live.osc.answering import WebTraffic
+from yehu_server.live.osc.answering import Peer, WebTraffic
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web.frames import TEXT, frame_of, write
@@ -23,7 +23,7 @@ CLOSING_S = 0.3
 BEHIND_S = 0.005
 
 
-class WebPeer:
+class WebPeer(Peer):
     """A WebSocket, which the OSC thread sends packets to, and the web's thread writes them.
 
     While the other end does not read, further ones are dropped, and no other client is delayed.
@@ -67,11 +67,6 @@ class WebPeer:
     def write(self, frame: bytes) -> None:
         """Write a frame; for the web's thread."""
         self._traffic.unsent += not write(self._transport, frame, limits.UNSENT)
-
-    def at(self, port: int) -> WebPeer:
-        """See `Peer`: a connection has no other port."""
-        del port
-        return self
 
 
 class WebSockets:

@@ -8,10 +8,11 @@ from wire import f32
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.live.osc import clients, handler
+from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.live.part_addresses import OF_PARTS, group_of
-from yehu_server.live.web.query import LISTENABLE_OF_PARTS, Snapshot, find, node_at
+from yehu_server.live.web.query import Snapshot, find, node_at
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learn as learned
@@ -273,7 +274,9 @@ def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
     part = find(root, "/yehu/part/2")
     assert part["DESCRIPTION"].startswith("Part 2")
     with_value = {path for path, node in walk(part) if "VALUE" in node}
-    assert with_value == {"/yehu/part/2" + address for address in LISTENABLE_OF_PARTS}
+    assert with_value == {
+        "/yehu" + address for address in readable(2) if address.startswith("/part/2/")
+    }
     writable = {path for path, node in walk(part) if node["ACCESS"] & 2}
     known = {one for one in still.handler.addresses if one.startswith("/yehu/part/2/")}
     assert writable == known

@@ -24,7 +24,6 @@ from yehu_server.live.audio.voice_input import VoiceInput
 from yehu_server.live.housekeeper import Housekeeper, MappingWatch
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
-from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
@@ -33,14 +32,13 @@ from yehu_server.live.osc.status import PartSources, StatusSources, read_part_st
 from yehu_server.live.osc.work_queue import Calls
 from yehu_server.live.page.pages import Pages
 from yehu_server.live.part_addresses import FIRST, part_of
-from yehu_server.live.web.query import Snapshot
-from yehu_server.live.web.server import Sources, WebServer
+from yehu_server.live.web.server import WebServer
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.delay import Delay
 from yehu_server.playing.parts import assemble, number_of_instruments, player_of, seated
 from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
-from yehu_server.util.files import anything, check_free, check_target, nothing, shipped_folder
+from yehu_server.util.files import anything, check_free, check_target, nothing
 
 log = logging.getLogger(__name__)
 Input = OscPorts | WebServer | Announcer | MidiPorts | Pages | VoiceInput
@@ -195,14 +193,9 @@ class Server:
     def _web(self) -> WebServer | None:
         if self.options.http is None:
             return None
-        sources = Sources(
-            lambda group: Snapshot(self.context.values(group), self.status(group)),
-            shipped_folder("mappings"),
-            len(self.players),
-            lambda: more_calls(self.players),
-            lambda: None if self.pages is None else self.pages.port,
-        )
-        return WebServer(self.options.http, self.osc, self.handler.clients, sources)
+        pages = self.pages
+        page_port = (lambda: None) if pages is None else (lambda: pages.port)
+        return WebServer(self.options.http, self.osc, self.context, page_port)
 
     def start(self) -> None:
         """Start to play.

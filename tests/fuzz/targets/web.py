@@ -7,20 +7,23 @@ import functools
 import json
 import logging
 from collections.abc import Callable, Iterable
+from types import SimpleNamespace
 from typing import Any
 
 from aiohttp import web as aiohttp_web
 from aiohttp.test_utils import make_mocked_request
-from fuzz.target import ROOT, target, words
+from fuzz.target import target, words
 
 from yehu_server.errors import RefusedError
 from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.packets import PacketError, unpack
 from yehu_server.live.osc.status import STATUS, Kind
 from yehu_server.live.web import web_sockets
-from yehu_server.live.web.query import LISTENABLE, Snapshot
-from yehu_server.live.web.server import Sources, WebOptions, WebServer
+from yehu_server.live.web.server import WebOptions, WebServer
 from yehu_server.params.table import PREFIX, TABLE
+from yehu_server.playing.mapping import DEFAULT, load
+from yehu_server.playing.preset_folders import Presets
 
 HOST = "127.0.0.1"
 VALUES = {param.address: param.default for param in TABLE}
@@ -69,6 +72,9 @@ class Connection(asyncio.Transport):
     def writelines(self, pieces: Iterable[bytes]) -> None:
         self.written += b"".join(pieces)
 
+    def get_write_buffer_size(self) -> int:
+        return 0
+
     def is_closing(self) -> bool:
         return self._is_closing
 
@@ -113,8 +119,11 @@ class House:
         logger.propagate = False
         self.loop.set_exception_handler(lambda _loop, said: self._defect(said))
         clients = Clients(lambda _group: VALUES, PREFIX, lambda _group: STATES)
-        sources = Sources(lambda _group: Snapshot(VALUES, STATES), ROOT / "mappings")
-        self.web = WebServer(WebOptions((HOST, 0)), Osc(), clients, sources)
+        player = SimpleNamespace(presets=Presets(), mapping=load(DEFAULT))
+        context = SimpleNamespace(
+            players=[player], values=lambda _: VALUES, status=lambda _: STATES, clients=clients
+        )
+        self.web = WebServer(WebOptions((HOST, 0)), Osc(), context)
         self._clients = clients
         self._server = self.loop.run_until_complete(self._set_up())
 
@@ -227,4 +236,4 @@ def websocket_command(data: bytes) -> None:
     """A text frame is a command for an existing address, or a RefusedError."""
     command, address = web_sockets._read(data.decode(errors="replace"), 1)
     assert command in {"LISTEN", "IGNORE"}
-    assert address in LISTENABLE
+    assert address in readable(1)

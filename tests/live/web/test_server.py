@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import socket
 
 import pytest
@@ -12,6 +11,7 @@ from web_client import ask, walk
 from yehu_server.live.network import Allowed
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.status import STATUS, Kind
+from yehu_server.live.web import server
 from yehu_server.live.web.server import PARAMETERS, WebOptions
 from yehu_server.params.table import TABLE
 from yehu_server.util.files import shipped_folder
@@ -103,15 +103,12 @@ def test_the_proposals_status_codes(port):
 # ---------------------------------------------------------------- pages
 
 
-def test_the_page_of_parameters_is_served_where_there_is_one(
-    shared_web, port, monkeypatch, tmp_path
-):
+def test_the_page_of_parameters_is_served_where_there_is_one(port, monkeypatch, tmp_path):
     is_there = (shipped_folder("mappings") / PARAMETERS).exists()
     assert ask(port, f"/{PARAMETERS}").status == (200 if is_there else 404)
     (tmp_path / PARAMETERS).write_text("<p>蘇</p>", "utf-8")
     (tmp_path / "secret.html").write_text("no", "utf-8")
-    web = shared_web.server.web
-    monkeypatch.setattr(web, "_sources", dataclasses.replace(web._sources, folder=tmp_path))
+    monkeypatch.setattr(server, "shipped_folder", lambda _name: tmp_path)
     answer = ask(port, f"/{PARAMETERS}")
     assert answer.headers["Content-Type"] == "text/html; charset=utf-8"
     assert answer.body.decode() == "<p>蘇</p>"

@@ -8,13 +8,20 @@ than its length times the address's: a regular expression may take for ever.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
-from functools import lru_cache
+from collections.abc import Callable, Iterable
+from functools import cache, lru_cache
 
 from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean
 from yehu_server.live import limits
 from yehu_server.live.osc.status import PART_STATUS, STATUS, STATUS_PREFIX
-from yehu_server.live.part_addresses import PART_PARAMS, check_own, check_part, split_group
+from yehu_server.live.part_addresses import (
+    FIRST,
+    PART_PARAMS,
+    check_own,
+    check_part,
+    group_of,
+    split_group,
+)
 from yehu_server.params.table import PREFIX, TABLE, UNIT, find
 
 SPECIAL = frozenset("*?[{")
@@ -87,15 +94,22 @@ NAMES = [row.name for row in STATUS]
 PART_NAMES = [row.name for row in PART_STATUS]
 
 
-def readable(groups: Iterable[str]) -> Iterator[str]:
-    """The addresses of all values, of parameters and then of the status, of some groups."""
-    for group in groups:
-        for form in ("", UNIT):
-            params = PART_PARAMS if group else TABLE
-            yield from (group + param.address + form for param in params)
-    for group in groups:
-        names = PART_NAMES if group else NAMES
-        yield from (group + STATUS_PREFIX + name for name in names)
+@cache
+def readable(parts: int) -> dict[str, None]:
+    """The addresses of all values, of parameters and then of the status, in order."""
+    groups = (FIRST, *map(group_of, range(parts)))
+    values = (
+        group + param.address + form
+        for group in groups
+        for form in ("", UNIT)
+        for param in (PART_PARAMS if group else TABLE)
+    )
+    status = (
+        group + STATUS_PREFIX + name
+        for group in groups
+        for name in (PART_NAMES if group else NAMES)
+    )
+    return dict.fromkeys((*values, *status))
 
 
 def parameter_of(address: str) -> str:

@@ -10,7 +10,7 @@ from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, parameter_of, readable
 from yehu_server.live.osc.packets import answer
 from yehu_server.live.osc.part_calls import port_of
-from yehu_server.live.part_addresses import FIRST, check_own, check_part, group_of, split_group
+from yehu_server.live.part_addresses import check_own, check_part, split_group
 from yehu_server.params.table import PREFIX, UNIT, read
 
 
@@ -22,7 +22,7 @@ class ServerCalls(GroupCalls):
     )
     def _get(self, call: Request) -> None:
         wanted = call.word().removeprefix(PREFIX)
-        known = self._readable(len(self._context.players))
+        known = readable(len(self._context.players))
         if is_pattern(wanted):
             addresses = fitting(wanted, known)
         elif wanted in known:
@@ -34,12 +34,6 @@ class ServerCalls(GroupCalls):
         for address in addresses:
             topic = topic_of(address)
             self._send(call.peer, address, read(read_topic(topic), own_address(address, topic)))
-
-    @staticmethod
-    @cache
-    def _readable(parts: int) -> dict[str, None]:
-        """The addresses of all values, in order."""
-        return dict.fromkeys(readable([FIRST, *map(group_of, range(parts))]))
 
     def _found(self, address: str) -> str:
         """The address of a parameter; raises ParameterError, with a similar one if there is one."""

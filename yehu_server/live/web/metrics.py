@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from prometheus_client import CollectorRegistry
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
@@ -11,8 +11,8 @@ from prometheus_client.registry import Collector
 
 from yehu_server.live.osc.status import PART_STATUS, STATUS, Kind
 from yehu_server.live.part_addresses import FIRST, group_of
-from yehu_server.live.web.query import Snapshot
 
+Status = Mapping[str, float | str]  # by name
 NAMESPACE = "yehu"
 FAMILIES = {Kind.GAUGE: GaugeMetricFamily, Kind.COUNTER: CounterMetricFamily}
 
@@ -20,12 +20,12 @@ FAMILIES = {Kind.GAUGE: GaugeMetricFamily, Kind.COUNTER: CounterMetricFamily}
 class Metrics(Collector):
     """The status values that are numbers, read whenever metrics are requested.
 
-    `snapshot`: returns the values of a group of addresses.
+    `status`: returns the status values of a group of addresses.
     `parts`: number of parts; where there are several, each has metrics with the label ``part``.
     """
 
-    def __init__(self, snapshot: Callable[[str], Snapshot], parts: int = 1) -> None:
-        self._snapshot = snapshot
+    def __init__(self, status: Callable[[str], Status], parts: int) -> None:
+        self._status = status
         self._parts = parts
         self._registry = CollectorRegistry()
         self._registry.register(self)
@@ -36,13 +36,13 @@ class Metrics(Collector):
 
     def collect(self) -> Iterator[Metric]:
         """See `Collector`."""
-        status = self._snapshot(FIRST).status
+        status = self._status(FIRST)
         for row in STATUS:
             family = FAMILIES.get(row.kind)
             if family is not None:
                 yield family(f"{NAMESPACE}_{row.name}", row.doc, value=float(status[row.name]))
         several = range(self._parts) if self._parts > 1 else ()
-        parts = [self._snapshot(group_of(part)).status for part in several]
+        parts = [self._status(group_of(part)) for part in several]
         for own in PART_STATUS if parts else ():
             metric = FAMILIES[own.kind](f"{NAMESPACE}_part_{own.name}", own.doc, labels=["part"])
             for number, part in enumerate(parts, start=1):

@@ -12,7 +12,6 @@ from functools import cache, partial
 from itertools import chain
 from typing import Any
 
-from yehu_server.errors import ParameterError
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.call import Argument, Call
 from yehu_server.live.osc.status import (
@@ -23,15 +22,7 @@ from yehu_server.live.osc.status import (
     PartValue,
     as_argument,
 )
-from yehu_server.live.part_addresses import (
-    FIRST,
-    OF_PARTS,
-    PART_PARAMS,
-    PLAIN,
-    check_part,
-    group_of,
-    split_group,
-)
+from yehu_server.live.part_addresses import FIRST, PART_PARAMS, group_of
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE
 from yehu_server.params.table import UNIT as AS_UNIT
@@ -56,9 +47,6 @@ UNIT_NAMES = {
     "MIDI note": "time.midinote",
     "dB": "gain.db",
 }
-# Addresses to which clients may listen, without the prefix, and below a part.
-LISTENABLE = PLAIN | {STATUS_PREFIX + row.name for row in STATUS}
-LISTENABLE_OF_PARTS = OF_PARTS | {STATUS_PREFIX + row.name for row in PART_STATUS}
 PART_DOC = "Part {}: a player of its own, with the instrument that it plays."
 
 
@@ -68,16 +56,6 @@ class Snapshot:
 
     values: Mapping[str, float]
     status: Mapping[str, float | str]
-
-
-def is_listenable(address: str, parts: int) -> bool:
-    """Whether clients may listen to an address, without the prefix."""
-    group, own = split_group(address)
-    try:
-        check_part(group, parts)
-    except ParameterError:
-        return False
-    return own in (LISTENABLE_OF_PARTS if group else LISTENABLE)
 
 
 def node_at(

@@ -10,9 +10,8 @@ import ipaddress
 import json
 import logging
 import socket
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -21,9 +20,9 @@ from aiohttp import web
 from yehu_server.errors import DeviceError, one_line
 from yehu_server.live import limits
 from yehu_server.live.network import Address, Allowed, format_address, plain
+from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.answering import WebTraffic
-from yehu_server.live.osc.call import Call
-from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web import query
 from yehu_server.live.web.access import Connections, check, own_names, serve_http
@@ -31,7 +30,7 @@ from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.metrics import Metrics
 from yehu_server.live.web.web_sockets import WebSockets
 from yehu_server.params.table import PREFIX
-from yehu_server.util.files import why
+from yehu_server.util.files import shipped_folder, why
 
 log = logging.getLogger(__name__)
 
@@ -58,29 +57,27 @@ class WebOptions:
     allowed: Allowed = field(default_factory=Allowed)
 
 
-@dataclass(frozen=True)
-class Sources:
-    """Where answers come from; all may be called by any thread."""
-
-    snapshot: Callable[[str], query.Snapshot]  # of a group of addresses
-    folder: Path  # that has the page of parameters
-    parts: int = 1
-    more_calls: Callable[[], Iterable[Call]] = tuple  # beside all_calls.CALLS
-    page_port: Callable[[], int | None] = lambda: None  # where the page is served, if it is
-
-
 class WebServer:
-    """A TCP port for HTTP and WebSockets, and its thread; raises DeviceError as `listen`."""
+    """A TCP port for HTTP and WebSockets, and its thread; raises DeviceError as `listen`.
+
+    `page_port`: returns the port where the page is served, if it is.
+    """
 
     def __init__(
-        self, options: WebOptions, osc: OscPorts, clients: Clients, sources: Sources
+        self,
+        options: WebOptions,
+        osc: OscPorts,
+        context: CallContext,
+        page_port: Callable[[], int | None] = lambda: None,
     ) -> None:
         self.traffic = WebTraffic()
         self._allowed = options.allowed
         self._osc = osc
-        self._sources = sources
-        self._sockets = WebSockets(osc, clients, self.traffic, sources.parts)
-        self._metrics = Metrics(sources.snapshot, sources.parts)
+        self._context = context
+        self._page_port = page_port
+        self._parts = len(context.players)
+        self._sockets = WebSockets(osc, context.clients, self.traffic, self._parts)
+        self._metrics = Metrics(context.status, self._parts)
         self._names = own_names()
         self._listening = listen("OSCQuery", *options.address)
         self.host, self.port = self._listening.getsockname()[:2]
@@ -141,7 +138,7 @@ class WebServer:
             return web.Response(body=body, headers=HEADERS | {"Content-Type": content_type})
         if request.path == f"/{PARAMETERS}":
             return self._parameters()
-        page_port = self._sources.page_port()
+        page_port = self._page_port()
         if request.path in {"/panel", "/panel/"} and page_port is not None:
             host = urlsplit(f"//{request.host}").hostname or ""  # which was checked
             raise web.HTTPTemporaryRedirect(f"http://{format_address(host, page_port)}/")
@@ -159,14 +156,17 @@ class WebServer:
         for name in wanted:
             if name not in query.ATTRIBUTES:
                 raise web.HTTPBadRequest(text=one_line(f"unknown attribute {name!r}") + "\n")
-        sources = self._sources
-        node = query.node_at(request.path, sources.snapshot, sources.parts, sources.more_calls())
+        more = more_calls(self._context.players)
+        node = query.node_at(request.path, self._snapshot, self._parts, more)
         if node is None:
             raise web.HTTPNotFound(text=one_line(f"nothing at {request.path}") + "\n")
         if not wanted:
             return _json(node)
         found = {name: node[name] for name in wanted if name in node}
         return _json(found) if found else web.Response(status=204, headers=HEADERS)
+
+    def _snapshot(self, group: str) -> query.Snapshot:
+        return query.Snapshot(self._context.values(group), self._context.status(group))
 
     def _host_info(self, request: web.Request) -> dict[str, Any]:
         # The address by which the client reached this machine, which may have several.
@@ -184,7 +184,7 @@ class WebServer:
         }
 
     def _parameters(self) -> web.Response:
-        file = self._sources.folder / PARAMETERS
+        file = shipped_folder("mappings") / PARAMETERS
         try:
             return _html(file.read_text("utf-8"))
         except OSError:

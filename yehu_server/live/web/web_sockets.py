@@ -13,9 +13,9 @@ from yehu_server.errors import RefusedError, shortened
 from yehu_server.live import limits
 from yehu_server.live.osc.answering import Peer, WebTraffic
 from yehu_server.live.osc.clients import Clients
+from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web.frames import TEXT, frame_of, write
-from yehu_server.live.web.query import is_listenable
 from yehu_server.params.table import PREFIX
 
 HEARTBEAT_S = 20.0  # a socket that does not answer within half of this is closed
@@ -144,6 +144,6 @@ def _read(text: str, parts: int) -> tuple[str, str]:
     if command not in ("LISTEN", "IGNORE"):
         raise RefusedError(f"unknown command {shortened(repr(command))}; there are LISTEN, IGNORE")
     address = path.removeprefix(PREFIX) if isinstance(path, str) else ""
-    if not is_listenable(address, parts) or address == path:
+    if address not in readable(parts) or address == path:
         raise RefusedError(f"{command}: nothing to listen to at {shortened(repr(path))}")
     return command, address

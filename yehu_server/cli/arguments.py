@@ -120,13 +120,9 @@ class Parser(argparse.ArgumentParser):
         return known
 
     @property
-    def options(self) -> list[str]:
-        """All options, with their dashes."""
-        return list(self._option_string_actions)
-
-    def option(self, name: str) -> argparse.Action | None:
-        """The action of an option; argparse has no public way to find it."""
-        return self._option_string_actions.get(name)
+    def options(self) -> dict[str, argparse.Action]:
+        """The actions of all options, by their names with dashes; argparse has no public way."""
+        return self._option_string_actions
 
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and exit with code 2."""

@@ -63,7 +63,7 @@ def _words(command: Parser, name: str, value: Any) -> list[str]:
     option = f"--{name.replace('_', '-')}"
     if option in NOT_IN_FILES:
         raise ParameterError(f"a config file {NOT_IN_FILES[option]}")
-    action = command.option(option)
+    action = command.options.get(option)
     if action is None:
         known = [other.removeprefix("--") for other in command.options]
         raise ParameterError(f"unknown option{did_you_mean(name, known)}")

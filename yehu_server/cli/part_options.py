@@ -93,28 +93,20 @@ def routes_of(arguments: argparse.Namespace, parts: Sequence[PartOptions]) -> li
 
 def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | None:
     """The arguments of a part; None where it has none of its own."""
-    mapping, instrument, preset, settings = (
-        [text for part, text in given if part == number]
-        for given in (
-            arguments.part_mapping,
-            arguments.part_instrument,
-            arguments.part_preset,
-            arguments.part_set,
-        )
-    )
-    if not (mapping or instrument or preset or settings):
+    given = {
+        option: [text for part, text in getattr(arguments, f"part_{option}") if part == number]
+        for option in ("mapping", "instrument", "preset", "set")
+    }
+    if not any(given.values()):
         return None
     own = copy.copy(arguments)
-    for option, given in (("mapping", mapping), ("instrument", instrument), ("preset", preset)):
-        if len(given) > 1:
-            raise ParameterError(f"--part-{option}: part {number} has two, {', '.join(given)}")
-    if mapping:
-        own.mapping, own.mpe = mapping[0], False
-    if instrument:
-        own.instrument = Path(instrument[0])
-    if preset:
-        own.preset = preset[0]
-    own.set = [*arguments.set, *settings]
+    own.set = [*arguments.set, *given.pop("set")]
+    own.mpe = arguments.mpe and not given["mapping"]
+    for option, texts in given.items():
+        if len(texts) > 1:
+            raise ParameterError(f"--part-{option}: part {number} has two, {', '.join(texts)}")
+        if texts:
+            setattr(own, option, Path(texts[0]) if option == "instrument" else texts[0])
     return own
 
 

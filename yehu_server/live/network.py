@@ -110,18 +110,17 @@ def parse_address(text: str, default_host: str, default_port: int) -> Address:
     except ValueError:
         number = -1
     host = host.removeprefix("[").removesuffix("]") or default_host
-    if not 0 <= number <= 65535 or not is_host(host):
+    if not 0 <= number <= 65535 or not (_NAME.fullmatch(host) or is_ip_address(host)):
         raise ParameterError(
             f"{text!r}: expected HOST:PORT, such as {format_address(*OSC_ADDRESS)}"
         )
     return host, number
 
 
-def is_host(text: str) -> bool:
-    """Whether a text may be a host's name or IP address."""
-    if _NAME.fullmatch(text):
-        return True
+def is_ip_address(text: str) -> bool:
+    """Whether a text is an IP address."""
     try:
-        return isinstance(ipaddress.ip_address(text), ipaddress.IPv6Address)
+        ipaddress.ip_address(text)
     except ValueError:
         return False
+    return True

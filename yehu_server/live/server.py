@@ -28,7 +28,13 @@ from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.receiving import OscPorts
-from yehu_server.live.osc.status import PartSources, StatusSources, read_part_status, read_status
+from yehu_server.live.osc.status import (
+    PART_STATUS,
+    STATUS,
+    PartSources,
+    StatusSources,
+    read_status,
+)
 from yehu_server.live.osc.work_queue import Calls
 from yehu_server.live.page.pages import Pages
 from yehu_server.live.part_addresses import FIRST, part_of
@@ -278,8 +284,9 @@ class Server:
     def status(self, group: str = FIRST) -> Mapping[str, float | str]:
         """The status values of a group of addresses, by name; any thread may call."""
         if group:
-            return read_part_status(PartSources.of(self.players[part_of(group)]))
+            return read_status(PART_STATUS, PartSources.of(self.players[part_of(group)]))
         return read_status(
+            STATUS,
             StatusSources(
                 parts=[PartSources.of(player) for player in self.players],
                 ensemble=self.ensemble,
@@ -294,7 +301,7 @@ class Server:
                 midi=self.midi,
                 recording=self.takes.names,
                 uptime_s=time.monotonic() - self._started,
-            )
+            ),
         )
 
     def _sound(self) -> dict[str, float | str | None]:

@@ -17,7 +17,6 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -292,7 +291,8 @@ class Output:
 
     def _has_stopped(self) -> bool:
         """Whether the callbacks have stopped, in time in which this process was awake."""
-        count, now = int(self._meters()["callbacks"]), self._awake()
+        meters = {"callbacks": 0} if self._ensemble is None else self._ensemble.meters()
+        count, now = int(meters["callbacks"]), self._awake()
         if count != self._last_callback[0] or self.state.device is None:
             self._last_callback = count, now
         return now - self._last_callback[1] > HUNG_AFTER_S
@@ -315,9 +315,6 @@ class Output:
         self._start_clock()
 
     # -- the silent clock ----------------------------------------------------------------------
-
-    def _meters(self) -> Any:
-        return self._ensemble.meters() if self._ensemble is not None else {"callbacks": 0}
 
     def _start_clock(self) -> None:
         if self._clock is None and self._ensemble is not None:

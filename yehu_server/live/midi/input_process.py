@@ -48,7 +48,7 @@ class Input:
         self.is_forwarded = False
         self._feed = feed
         self._parent = parent
-        self._last = 0.0
+        self.heard_s = 0.0  # of the last message, or of a stop of this process
         self._senses = False
         midi.ignore_types(sysex=True, timing=True, active_sense=False)
         midi.set_callback(self._receive)
@@ -56,7 +56,7 @@ class Input:
     def _receive(self, event: tuple[Sequence[int], float], _data: Any = None) -> None:
         at = time.monotonic_ns()
         data = event[0]
-        self._last = 1e-9 * at
+        self.heard_s = 1e-9 * at
         if data[0] == ACTIVE_SENSING:
             self._senses = True
         elif data[0] not in CLOCKS and len(data) <= MOST_BYTES:  # no system exclusive
@@ -66,14 +66,10 @@ class Input:
 
     def sense(self) -> None:
         """End the notes of the port where active sensing has stopped."""
-        if self._senses and time.monotonic() - self._last > SENSE_WITHIN_S:
+        if self._senses and time.monotonic() - self.heard_s > SENSE_WITHIN_S:
             self._senses = False
             self._feed.end_port_notes(self.name, time.monotonic_ns(), is_gone=False)
             self._parent.send("silent", port=self.name)
-
-    def restart_sensing(self) -> None:
-        """Begin the time for active sensing again."""
-        self._last = time.monotonic()
 
     def close(self) -> None:
         """Close the port."""
@@ -125,13 +121,11 @@ class Inputs:
         early = time.monotonic() - AGAIN_S
         for name, full_name in stable.items():
             is_due = self._refused.get(name, early) <= early
-            if name not in self._open and is_due and self._wants(name):
+            is_named = bool(self._patterns) and is_wanted(name, self._patterns)
+            wanted = is_named or (self._others and is_wanted(name, ()))
+            if name not in self._open and is_due and wanted:
                 self._add(name, full_name)
         self._report_missing(stable)
-
-    def _wants(self, name: str) -> bool:
-        named = bool(self._patterns) and is_wanted(name, self._patterns)
-        return named or (self._others and is_wanted(name, ()))
 
     def _report_missing(self, names: Iterable[str]) -> None:
         """Report patterns that no port matches, at the first poll."""
@@ -146,7 +140,7 @@ class Inputs:
         before, self._sensed = self._sensed, time.monotonic()
         for port in list(self._open.values()):
             if self._sensed - before > SLEPT_S:
-                port.restart_sensing()
+                port.heard_s = self._sensed
             else:
                 port.sense()
 

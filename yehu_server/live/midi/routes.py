@@ -114,12 +114,10 @@ def check_routes(routes: Sequence[Route], parts: int) -> None:
             is_same_port = route.names == other.names
             channels = {route.channel, other.channel}
             if is_same_port and (None in channels or len(channels) == 1):
-                raise ParameterError(_twice(route, other))
-
-
-def _twice(route: Route, other: Route) -> str:
-    wanted, taken = f"{route.part + 1}={route.text}", f"{other.part + 1}={other.text}"
-    return f"{wanted}: this input is named twice ({taken}); parts can share one by its channels"
+                raise ParameterError(
+                    f"{route.part + 1}={route.text}: this input is named twice ({other.part + 1}="
+                    f"{other.text}); parts can share one by its channels"
+                )
 
 
 class Router:

@@ -6,7 +6,7 @@ OSC, OSCQuery, the metrics, the status line of `serve` and docs/osc.md take them
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
@@ -261,14 +261,9 @@ STATUS: tuple[AnyValue, ...] = (
 )  # fmt: skip
 
 
-def read_status(sources: StatusSources) -> dict[str, float | str]:
-    """All status values, by name, in the table's order."""
-    return {row.name: row.read(sources) for row in STATUS}
-
-
-def read_part_status(part: PartSources) -> dict[str, float]:
-    """All status values of a part, by name, in the table's order."""
-    return {row.name: row.read(part) for row in PART_STATUS}
+def read_status(rows: Iterable[StatusValue[S, V]], sources: S) -> dict[str, V]:
+    """The status values of a table, by name, in its order."""
+    return {row.name: row.read(sources) for row in rows}
 
 
 def as_argument(value: float | str) -> float | str:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import ipaddress
 import logging
 import socket
 from collections import Counter
@@ -20,7 +19,7 @@ from urllib.parse import urlsplit
 from aiohttp import web
 
 from yehu_server.live import limits
-from yehu_server.live.network import Allowed, is_here, plain
+from yehu_server.live.network import Allowed, is_here, is_ip_address, plain
 
 ENDING_S = 0.2  # to finish answers at the end
 LONGEST_NAME = 300
@@ -67,7 +66,7 @@ def own_names() -> frozenset[str]:
 def refusal(hosts: Sequence[str], origins: Sequence[str], names: frozenset[str]) -> str:
     """Why a request is refused, by its headers Host and Origin; empty where it is allowed."""
     host, _ = _place(hosts[0]) if len(hosts) == 1 else NOWHERE
-    if not (_is_address(host) or host in names):
+    if not (is_ip_address(host) or host in names):
         return "ask for this machine by its address, or as localhost"
     if not origins:
         return ""
@@ -106,14 +105,6 @@ def _place(text: str, port: int = 0) -> tuple[str, int]:
     if parts.username is not None or parts.path or parts.query or parts.fragment:
         return NOWHERE
     return (parts.hostname or "").removesuffix("."), port
-
-
-def _is_address(host: str) -> bool:
-    try:
-        ipaddress.ip_address(host)
-    except ValueError:
-        return False
-    return True
 
 
 class Connections:

@@ -27,16 +27,10 @@ SHORTEST_GAP = 3
 
 
 def image(rate: float) -> Array:
-    """Make the image of a calibrated instrument that is ready to play, as `serve` begins.
+    """Make the image of a calibrated instrument at a rate (Hz), ready to play as `serve` begins.
 
-    It has the default mapping, in equal temperament; program changes are ignored.
-
-    `rate` (Hz).
-
-    Returns
-    -------
-    ndarray [dtype=int64]
-        First word, number of words, the words; again; to the end.
+    It has the default mapping, in equal temperament; program changes are ignored. Returns runs
+    [dtype=int64]: first word, number of words, the words; again; to the end.
     """
     memory, playing = bytearray(memory_bytes(1)), PlayingOptions()
     spec = playing.spec(rate, calibration_for(rate))

@@ -100,17 +100,9 @@ def address_of(name: str, folder: Path) -> int | None:
 
 @functools.cache
 def loaded(folder: Path, sources: str, what: str = PLAYING) -> dict[str, int]:
-    """Load what is kept in a cache folder, or was shipped.
+    """Load what is kept in a cache folder, or was shipped; return the functions' addresses by name.
 
-    Parameters
-    ----------
-    sources : str
-        Key of the source that it has to be made from.
-
-    Returns
-    -------
-    dict
-        The functions' addresses by name; empty where they have to be compiled.
+    It is empty where they have to be compiled. `sources`: key of the source they were made from.
     """
     for path in (file_in(folder, what), file_in(SHIPPED, what)):
         try:

@@ -101,12 +101,8 @@ def dispatcher(
 ) -> Any:
     """numba's object for a function that others call.
 
-    Parameters
-    ----------
-    no_alias : bool
-        Whether no two of its arguments overlap.
-    one_version : bool
-        Whether constants make no versions of their own.
+    `no_alias`: whether no two of its arguments overlap.
+    `one_version`: whether constants make no versions of their own.
     """
     is_part = "no_cpython_wrapper" in options
     if is_part:

@@ -61,14 +61,10 @@ FORMATS = (
 def build(folder: Path, target: str) -> list[Path]:
     """Build all formats for a `--target` into a folder; for several, into a folder for each.
 
-    Raises YehuError where something is missing to build with, or the folder cannot be written.
+    Returns the files and bundles. Raises YehuError where something is missing to build with, or the
+    folder cannot be written.
 
     `target`: one of `targets.NAMES`, or `targets.ALL`.
-
-    Returns
-    -------
-    list of Path
-        The files and bundles.
     """
     names = [name for name in NAMES if target in (name, ALL)]
     if any(system.window == X11 for system in systems_of(target)) and not (SYSTEM / XCB).is_file():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -128,6 +129,18 @@ def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
         raise ParameterError(f"{keyboard}: maps no key")
     files = (scale,) if keyboard is None else (scale, keyboard)
     return Tuning(name, tuple(keys), fixed=keyboard is not None, files=files)
+
+
+def shipped_tunings() -> dict[str, Tuning]:
+    """Equal temperament, and the shipped scales: each by itself and on each map that takes it."""
+    folder = shipped_folder("tunings")
+    found = {"equal": EQUAL}
+    for scale in sorted(folder.glob("*.scl")):
+        found[scale.stem] = read_tuning(scale)
+        for keyboard in sorted(folder.glob("*.kbm")):
+            with suppress(ParameterError):  # the scale is not one for this map
+                found[f"{scale.stem}, {keyboard.stem}"] = read_tuning(scale, keyboard)
+    return found
 
 
 def _found(path: Path, ending: str) -> Path:

@@ -15,7 +15,7 @@ from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls
-from yehu_server.playing.tuning import EQUAL, read_tuning
+from yehu_server.playing.tuning import shipped_tunings
 from yehu_server.util.files import shipped_folder
 
 Array = Any
@@ -58,18 +58,11 @@ def carried() -> Carried:
             for name, mapping in loaded.items()
         },
         {name: -1 if m.key_switches is None else m.key_switches for name, m in loaded.items()},
-        _tunings(),
+        {
+            name: _runs(PlayingOptions(tuning=tuning), OF_TUNING)
+            for name, tuning in shipped_tunings().items()
+        },
     )
-
-
-def _tunings() -> dict[str, Array]:
-    folder = shipped_folder("tunings")
-    found = {"equal": EQUAL}
-    for scale in sorted(folder.glob("*.scl")):
-        found[scale.stem] = read_tuning(scale)
-        for keys in sorted(folder.glob("*.kbm")):
-            found[f"{scale.stem}, {keys.stem}"] = read_tuning(scale, keys)
-    return {name: _runs(PlayingOptions(tuning=tuning), OF_TUNING) for name, tuning in found.items()}
 
 
 def _runs(playing: PlayingOptions, fields: tuple[str, ...] = ()) -> Array:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import fields
 from enum import Enum
 from pathlib import Path
@@ -20,7 +19,6 @@ from yehu_server.core.player import fingering
 from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.errors import ParameterError
 from yehu_server.live.page.examples import examples
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.preset_file import SAVED, Preset
@@ -35,7 +33,14 @@ from yehu_server.playing.part_state import ELSEWHERE
 from yehu_server.playing.pitch_and_level import NOTE_NAMES
 from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tables import CURVES, WORDS, Controls, make_tables
-from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, RangePolicy, Tuning, read_tuning
+from yehu_server.playing.tuning import (
+    EQUAL,
+    KEYS,
+    STANDARD_A4,
+    RangePolicy,
+    Tuning,
+    shipped_tunings,
+)
 from yehu_server.util.files import shipped_folder, write_text
 
 
@@ -96,19 +101,6 @@ def preset(one: Preset) -> dict[str, Any]:
     return {**{name: getattr(one, name) for name in names}, "values": dict(one.values)}
 
 
-def tunings() -> dict[str, Any]:
-    """Equal temperament, and the shipped scales: each by itself and on each map that takes it."""
-    folder = shipped_folder("tunings")
-    scales, maps = (sorted(folder.glob(ending)) for ending in ("*.scl", "*.kbm"))
-    found = {"equal": tuning(EQUAL)}
-    for scale in scales:
-        found[scale.stem] = tuning(read_tuning(scale))
-        for keyboard in maps:
-            with suppress(ParameterError):  # the scale is not one for this map
-                found[f"{scale.stem}, {keyboard.stem}"] = tuning(read_tuning(scale, keyboard))
-    return found
-
-
 def tuning(one: Tuning) -> dict[str, Any]:
     """A tuning: the pitch of each key at the usual A4, or None where each sounds its own number."""
     keys = None if one.keys is None else [one.pitch(float(key), STANDARD_A4) for key in KEYS]
@@ -162,7 +154,7 @@ def facts(notes: NoteRange = YEHU) -> dict[str, Any]:
         "articulations": [[row.name, row.chinese] for row in ARTICULATIONS],
         "asItSings": AS_IT_SINGS,
         "presets": {"shipped": {one.name: preset(one) for one in shipped}, "saved": list(SAVED)},
-        "tunings": tunings(),
+        "tunings": {name: tuning(one) for name, one in shipped_tunings().items()},
         "snapshot": snapshot_layout(),
         "snapshotLength": snapshot_length(),
         "rates": list(RATES),

@@ -20,7 +20,7 @@ from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.page.examples import examples, write_capture_headers
 from yehu_server.live.page.facts import facts, module, write
-from yehu_server.util.files import shipped_folder, why, write_bytes
+from yehu_server.util.files import make_folder, shipped_folder, why, write_bytes
 
 INDEX = "index.html"
 # This meta element says that a yehu server serves the page; the static page does not have it.
@@ -185,16 +185,11 @@ def _files_of(folder: Path) -> Iterator[Path]:
 
 
 def _copy_all(files: Iterable[Path], source: Path, folder: Path) -> list[Path]:
-    """Copy files into another folder; return them."""
-    copied = []
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for file in files:
-            (folder / file).parent.mkdir(parents=True, exist_ok=True)
-            write_bytes(folder / file, (source / file).read_bytes())
-            copied.append(file)
-    except OSError as error:
-        raise OutputError(f"{folder}: {why(error)}") from error
+    """Copy files into another folder; return them. Raises OutputError."""
+    copied = list(files)
+    for file in copied:
+        make_folder((folder / file).parent)
+        write_bytes(folder / file, (source / file).read_bytes())
     return copied
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 from yehu_server.live import limits
@@ -20,6 +21,7 @@ from yehu_server.params.table import UNIT, read
 from yehu_server.util.token_bucket import TokenBucket
 
 
+@cache
 def topic_of(address: str) -> str:
     """The topic of an address (without the prefix): its group, or the status of its group."""
     group, own = split_group(address)
@@ -28,18 +30,17 @@ def topic_of(address: str) -> str:
 
 @dataclass
 class Subscriber:
-    """A peer and what it is to be sent. Addresses come by topics: see `topic_of`."""
+    """A peer and what it is to be sent."""
 
     peer: Peer
     # By topic: the end of its subscription (monotonic s), and the form of the addresses it is
     # sent: plain, or ending in UNIT.
     subscribed: dict[str, tuple[float, str]] = field(default_factory=dict)
-    # By topic: addresses of which it is sent all changes.
-    listens: dict[str, set[str]] = field(default_factory=dict)
+    listens: set[str] = field(default_factory=set)  # addresses of which it is sent all changes
     muted_until: float = 0.0  # until then it is not answered (monotonic s)
-    # Addresses to send, and their topics: in the next round of sending, and in the present one.
-    to_send: dict[str, str] = field(default_factory=dict)
-    sending: dict[str, str] = field(default_factory=dict)
+    # Addresses to send, in order: in the next round of sending, and in the present one.
+    to_send: dict[str, None] = field(default_factory=dict)
+    sending: dict[str, None] = field(default_factory=dict)
     errors: TokenBucket = field(
         default_factory=lambda: TokenBucket(limits.ERRORS_A_SECOND, limits.ERRORS_AT_ONCE)
     )
@@ -65,26 +66,21 @@ class Subscriber:
 
     def ignore(self, address: str) -> None:
         """Send it no more changes of an address that it listens to."""
-        topic = topic_of(address)
-        addresses = self.listens.get(topic, set())
-        addresses.discard(address)
-        if not addresses:
-            self.listens.pop(topic, None)
+        self.listens.discard(address)
         self.to_send.pop(address, None)
         self.sending.pop(address, None)
 
     def topics(self, now: float) -> Iterator[str]:
         """The topics of which it is to be sent something."""
         yield from (topic for topic, (end, _) in self.subscribed.items() if end > now)
-        yield from (*self.listens, *self.sending.values())
+        yield from map(topic_of, (*self.listens, *self.sending))
 
     def mark(self, topic: str, changed: Sequence[str], found: set[str], now: float) -> None:
         """Mark what it wants of changed addresses to be sent (`found` has all their forms)."""
         end, form = self.subscribed.get(topic, (0.0, ""))
         if end > now:
-            self.sending.update((address + form, topic) for address in changed)
-        if topic in self.listens:
-            self.sending.update(dict.fromkeys(self.listens[topic] & found, topic))
+            self.sending.update(dict.fromkeys(address + form for address in changed))
+        self.sending.update(dict.fromkeys(self.listens & found))
 
 
 Values = Callable[[str], Mapping[str, float]]
@@ -131,10 +127,10 @@ class ChangePublisher:
         wanted = dict.fromkeys(topic for one in subscribers for topic in one.topics(now))
         status = {topic for topic in wanted if topic.endswith(STATUS_PREFIX)}
         is_due = now - self._status_read >= STATUS_S or any(
-            own_address(address, topic) not in self._last.get(topic, ())
+            own_address(address) not in self._last.get(topic_of(address), ())
             for one in subscribers
-            for address, topic in one.sending.items()
-            if topic in status
+            for address in one.sending
+            if topic_of(address) in status
         )
         if status and is_due:
             self._status_read = now
@@ -168,10 +164,10 @@ class ChangePublisher:
                 and peer.takes_more
                 and subscribers.get(peer) is subscriber  # sending may end it
             ):
-                address, topic = next(iter(subscriber.sending.items()))
+                address = next(iter(subscriber.sending))
                 del subscriber.sending[address]
                 if address not in packets:
-                    value = read(self._last[topic], own_address(address, topic))
+                    value = read(self._last[topic_of(address)], own_address(address))
                     packets[address] = pack(self._prefix + address, value)
                 peer.send(packets[address])
                 left -= 1
@@ -182,6 +178,6 @@ class ChangePublisher:
                 break
 
 
-def own_address(address: str, topic: str) -> str:
+def own_address(address: str) -> str:
     """An address after its group."""
-    return address.removeprefix(topic.removesuffix(STATUS_PREFIX))
+    return split_group(address)[1]

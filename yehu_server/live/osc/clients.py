@@ -16,7 +16,6 @@ from yehu_server.live.osc.change_publisher import (
     Status,
     Subscriber,
     Values,
-    topic_of,
 )
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import STATUS_PREFIX
@@ -81,7 +80,7 @@ class Clients:
             return
         client = self._client(peer)
         if client.muted_until <= time.monotonic():
-            client.to_send.update((address, topic_of(address)) for address in addresses)
+            client.to_send.update(dict.fromkeys(addresses))
             self._is_waiting = True
 
     def mute(self, peer: Peer, seconds: float) -> None:
@@ -111,7 +110,7 @@ class Clients:
             topic, form = group + STATUS_PREFIX, ""
         client.subscribed[topic] = now + seconds, form
         sent = (group + address + form for address in self.read(topic))
-        client.to_send.update(dict.fromkeys(sent, topic))
+        client.to_send.update(dict.fromkeys(sent))
         return True
 
     def unsubscribe(self, peer: Peer) -> None:
@@ -121,8 +120,8 @@ class Clients:
     def listen(self, peer: Peer, address: str) -> None:
         """Send a peer the value at an address (without the prefix) now, and whenever it changes."""
         client = self._client(peer)
-        topic = client.to_send[address] = topic_of(address)
-        client.listens.setdefault(topic, set()).add(address)
+        client.to_send[address] = None
+        client.listens.add(address)
         self._is_waiting = True
 
     def ignore(self, peer: Peer, address: str) -> None:

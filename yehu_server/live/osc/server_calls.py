@@ -32,8 +32,8 @@ class ServerCalls(GroupCalls):
         call.check_peer()
         read_topic = cache(self._clients.read)
         for address in addresses:
-            topic = topic_of(address)
-            self._send(call.peer, address, read(read_topic(topic), own_address(address, topic)))
+            values = read_topic(topic_of(address))
+            self._send(call.peer, address, read(values, own_address(address)))
 
     def _found(self, address: str) -> str:
         """The address of a parameter; raises ParameterError, with a similar one if there is one."""

@@ -32,13 +32,7 @@ from yehu_server.cli.arguments import (
     add_output,
     add_reporting,
 )
-from yehu_server.cli.converters import (
-    channel,
-    hours,
-    number_within,
-    positive,
-    target,
-)
+from yehu_server.cli.converters import channel, hours, number_within, positive, target
 from yehu_server.cli.playing_options import add_playing
 from yehu_server.cli.render_one import rendered
 from yehu_server.cli.render_pipe import piped_in, quiet_pipe, score_source, sound_target

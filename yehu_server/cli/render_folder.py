@@ -188,17 +188,7 @@ def _check(arguments: argparse.Namespace) -> str:
 
 
 # What does not change the sound of a file. All other options do, also ones yet to be invented.
-NEUTRAL = (
-    "command",
-    "config",
-    "dask",
-    "jobs",
-    "json",
-    "midi",
-    "output",
-    "overwrite",
-    "quiet",
-)
+NEUTRAL = ("command", "config", "dask", "jobs", "json", "midi", "output", "overwrite", "quiet")
 SOUNDING = ("playing", "scores", "rendering", "util")  # folders of code, beside what is compiled
 
 

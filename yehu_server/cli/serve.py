@@ -153,10 +153,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
 
 
 def _report_page(
-    pages: Any,
-    options: PageOptions,
-    report: Callable[[str], None],
-    arguments: argparse.Namespace,
+    pages: Any, options: PageOptions, report: Callable[[str], None], arguments: argparse.Namespace
 ) -> None:
     from yehu_server.cli.page import show
     from yehu_server.cli.report import page_for_phones, page_lines

@@ -12,12 +12,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import (
-    add_command,
-    add_instrument,
-    add_options,
-    add_reporting,
-)
+from yehu_server.cli.arguments import add_command, add_instrument, add_options, add_reporting
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar
 from yehu_server.errors import OutputError
@@ -26,12 +21,7 @@ from yehu_server.util.files import check_distinct, check_target
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "simulate",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "simulate", __doc__, run)
     add_options(
         parser,
         """
@@ -65,10 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     compile_all(arguments, COMPILED if arguments.energy else {})
     with progress_bar(arguments, "simulating") as progress:
         result = simulate(
-            gesture,
-            energy=arguments.energy,
-            strings_every=arguments.strings,
-            progress=progress,
+            gesture, energy=arguments.energy, strings_every=arguments.strings, progress=progress
         )
     result.save(arguments.output)
     text = simulate_report(arguments.output, result)

@@ -28,13 +28,7 @@ from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.receiving import OscPorts
-from yehu_server.live.osc.status import (
-    PART_STATUS,
-    STATUS,
-    PartSources,
-    StatusSources,
-    read_status,
-)
+from yehu_server.live.osc.status import PART_STATUS, STATUS, PartSources, StatusSources, read_status
 from yehu_server.live.osc.work_queue import Calls
 from yehu_server.live.page.pages import Pages
 from yehu_server.live.part_addresses import FIRST, part_of
@@ -170,12 +164,7 @@ class Server:
             return None
         memory = self.output.memory.descriptor
         return Pages(
-            self.players,
-            self.options.page,
-            memory,
-            self._sound,
-            self._on_message,
-            self._rigs,
+            self.players, self.options.page, memory, self._sound, self._on_message, self._rigs
         )
 
     def _midi(self) -> MidiPorts | None:

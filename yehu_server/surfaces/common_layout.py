@@ -88,11 +88,7 @@ STRING = Pad(
     (("/pitch", (0,)), ("/press", (1,))),
 )
 BOW = Pad(
-    "bow",
-    (BOW_SPEED, BOW_FORCE),
-    Frame(0.5, 0.0, 0.5, 0.68),
-    (("/bow", (0, 1)),),
-    lifted="/bow",
+    "bow", (BOW_SPEED, BOW_FORCE), Frame(0.5, 0.0, 0.5, 0.68), (("/bow", (0, 1)),), lifted="/bow"
 )
 PADS = (STRING, BOW)
 KEYS = range(LOWEST_NOTE, HIGHEST_NOTE + 1)  # MIDI notes

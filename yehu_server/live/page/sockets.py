@@ -62,12 +62,7 @@ class PageSockets:
     each time that it is sent.
     """
 
-    def __init__(
-        self,
-        view: SharedView,
-        rigs: Sequence[int],
-        status: Mapping[str, Any],
-    ) -> None:
+    def __init__(self, view: SharedView, rigs: Sequence[int], status: Mapping[str, Any]) -> None:
         self._view = view
         self._rigs = rigs
         self._players = PagePlayers(view, rigs)

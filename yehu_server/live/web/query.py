@@ -59,10 +59,7 @@ class Snapshot:
 
 
 def node_at(
-    path: str,
-    snapshot: Callable[[str], Snapshot],
-    parts: int = 1,
-    more_calls: Iterable[Call] = (),
+    path: str, snapshot: Callable[[str], Snapshot], parts: int = 1, more_calls: Iterable[Call] = ()
 ) -> Node | None:
     """The node at a path with all that is below it, or None where there is none.
 

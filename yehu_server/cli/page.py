@@ -28,8 +28,7 @@ WHITE_ON_BLACK, PLAIN = "\x1b[38;5;231;48;5;16m", "\x1b[0m"
 
 def show(text: str, stream: TextIO) -> None:
     """Draw a text as a QR code, where a terminal shows it."""
-    encoding = stream.encoding or ""
-    if stream.isatty() and encoding.lower().startswith("utf"):
+    if stream.isatty() and (stream.encoding or "").lower().startswith("utf"):
         with contextlib.suppress(OSError):  # the terminal was closed
             stream.write("".join(f"{line}\n" for line in drawn(text)))
             stream.flush()

@@ -6,6 +6,7 @@ goes wrong is reported.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import threading
 import time
@@ -51,7 +52,6 @@ class MappingWatch:
             return None
         self._known = self._seen
         try:
-            _check(self._mapping.files)
             changed = self._read()
         except MappingError as error:
             if str(error) == self._refused:
@@ -63,23 +63,13 @@ class MappingWatch:
         return None if changed == was else changed
 
 
-def _check(files: tuple[Path, ...]) -> None:
-    """Refuse pipes and devices, whose reading might never end."""
-    for file in files:
-        if file.exists() and not file.is_file():
-            raise MappingError(f"{file}: is not a regular file")
-
-
 def _marks(files: tuple[Path, ...]) -> Marks:
-    return {file: _mark(file) for file in files}
-
-
-def _mark(file: Path) -> tuple[int, int, int] | None:
-    try:
-        status = file.stat()
-    except OSError:
-        return None
-    return status.st_mtime_ns, status.st_size, status.st_ino
+    found: Marks = dict.fromkeys(files)
+    for file in files:
+        with contextlib.suppress(OSError):
+            status = file.stat()
+            found[file] = status.st_mtime_ns, status.st_size, status.st_ino
+    return found
 
 
 REPORT_EVERY_S, UNDER_RUNS_EVERY_S = 10.0, 60.0

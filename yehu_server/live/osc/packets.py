@@ -1,6 +1,7 @@
 """Read and write OSC packets.
 
-python-osc does not read them here: it accepts damaged packets, and never ends with some.
+python-osc does neither here. It accepts damaged packets, and never ends with some; to write one, of
+which subscribers are sent hundreds at a time, takes it seven times as long.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.live.part_addresses import OF_PARTS, group_of
-from yehu_server.live.web.query import Snapshot, find, node_at
+from yehu_server.live.web.query import find, node_at
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learn as learned
@@ -268,9 +268,10 @@ def test_a_panic_drops_what_waits_for_its_part(still, players, wire, panic, kept
 def test_the_tree_has_each_part_with_all_that_is_its_own(still, players):
     states = {row.name: 0.0 for row in STATUS}
     own = {row.name: 0.0 for row in PART_STATUS}
-    sent = {group_of(n): Snapshot(player.values(), own) for n, player in enumerate(players)}
-    sent[""] = Snapshot(players[0].values(), states)
-    root = node_at("/", sent.__getitem__, len(players))
+    values = {group_of(n): player.values() for n, player in enumerate(players)}
+    values[""] = players[0].values()
+    status = lambda group: own if group else states  # noqa: E731
+    root = node_at("/", values.__getitem__, status, len(players))
     part = find(root, "/yehu/part/2")
     assert part["DESCRIPTION"].startswith("Part 2")
     with_value = {path for path, node in walk(part) if "VALUE" in node}

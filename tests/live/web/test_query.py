@@ -13,7 +13,7 @@ from web_client import walk
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
-from yehu_server.live.web.query import ATTRIBUTES, Snapshot, find, node_at
+from yehu_server.live.web.query import ATTRIBUTES, find, node_at
 from yehu_server.params.table import TABLE
 
 NOTHING = {Kind.TEXT: "", Kind.GAUGE: 0.0, Kind.COUNTER: 0}
@@ -21,13 +21,13 @@ VALUES = {param.address: param.default for param in TABLE}
 STANDING = {row.name: NOTHING[row.kind] for row in STATUS}
 
 
-def tree(snapshot, more_calls=()):
-    return node_at("/", lambda _group: snapshot, more_calls=more_calls)
+def tree(status=STANDING, more_calls=()):
+    return node_at("/", lambda _: VALUES, lambda _: status, more_calls=more_calls)
 
 
 @pytest.fixture(scope="module")
 def root():
-    return tree(Snapshot(VALUES, STANDING))
+    return tree()
 
 
 def test_each_node_is_where_it_says_and_has_what_belongs_to_its_arguments(root):
@@ -77,7 +77,7 @@ def test_every_call_can_be_called_with_arguments_of_their_own_ranges(root):
 
 def test_a_number_that_json_cannot_say_is_null_and_long_counts_are_floats():
     states = {"load": math.nan, "frame": INT_MAX + 1, "underruns": 3}
-    root = tree(Snapshot(VALUES, STANDING | states))
+    root = tree(STANDING | states)
     assert find(root, "/yehu/status/load")["VALUE"] == [None]
     assert find(root, "/yehu/status/frame")["TYPE"] == "f"
     assert find(root, "/yehu/status/underruns")["TYPE"] == "i"

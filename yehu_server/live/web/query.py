@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from functools import cache, partial
 from itertools import chain
 from typing import Any
@@ -50,33 +49,29 @@ UNIT_NAMES = {
 PART_DOC = "Part {}: a player of its own, with the instrument that it plays."
 
 
-@dataclass(frozen=True)
-class Snapshot:
-    """The values of a group of addresses: parameters by address, status by name."""
-
-    values: Mapping[str, float]
-    status: Mapping[str, float | str]
+Values = Callable[[str], Mapping[str, float]]  # of parameters of a group, by address
+Status = Callable[[str], Mapping[str, float | str]]  # status values of a group, by name
 
 
 def node_at(
-    path: str, snapshot: Callable[[str], Snapshot], parts: int = 1, more_calls: Iterable[Call] = ()
+    path: str, values: Values, status: Status, parts: int = 1, more_calls: Iterable[Call] = ()
 ) -> Node | None:
     """The node at a path with all that is below it, or None where there is none.
 
     Nothing else is built, and only groups of addresses that are needed are read.
 
-    `snapshot`: returns the values of a group of addresses: of `FIRST`, or of a part.
+    `values`, `status`: called with a group of addresses: `FIRST`, or that of a part.
     `parts`: number of parts; where there are several, each has addresses of its own, too.
     `more_calls`: calls added to `CALLS`, or in place of some; their addresses include the prefix.
     """
     below = path.strip("/")
-    snapshot = cache(snapshot)
+    values, status = cache(values), cache(status)
     root: Node = {"FULL_PATH": "/", "ACCESS": NO_VALUE, "DESCRIPTION": ROOT_DOC}
-    nodes: list[Iterable[tuple[str, Callable[[], Node]]]] = [_nodes(FIRST, snapshot)]
+    nodes: list[Iterable[tuple[str, Callable[[], Node]]]] = [_nodes(FIRST, values, status)]
     for number in range(parts) if parts > 1 else ():
         described: Node = {"DESCRIPTION": PART_DOC.format(number + 1)}
         nodes.append([(PREFIX + group_of(number), partial(dict, described))])
-        nodes.append(_nodes(group_of(number), snapshot))
+        nodes.append(_nodes(group_of(number), values, status))
     nodes.append((call.address, partial(_of_call, call)) for call in more_calls)
     for address, describe in chain.from_iterable(nodes):
         if not below or f"{address}/".startswith(f"/{below}/"):
@@ -84,16 +79,14 @@ def node_at(
     return find(root, path)
 
 
-def _nodes(
-    group: str, snapshot: Callable[[str], Snapshot]
-) -> Iterable[tuple[str, Callable[[], Node]]]:
+def _nodes(group: str, values: Values, status: Status) -> Iterable[tuple[str, Callable[[], Node]]]:
     """The addresses of a group, and what describes each."""
     prefix = PREFIX + group
     for param in PART_PARAMS if group else TABLE:
-        yield prefix + param.address, partial(_of_param, param, group, snapshot)
-        yield prefix + param.address + AS_UNIT, partial(_of_unit, param, group, snapshot)
+        yield prefix + param.address, partial(_of_param, param, group, values)
+        yield prefix + param.address + AS_UNIT, partial(_of_unit, param, group, values)
     for row in PART_STATUS if group else STATUS:
-        yield prefix + STATUS_PREFIX + row.name, partial(_of_status, row, group, snapshot)
+        yield prefix + STATUS_PREFIX + row.name, partial(_of_status, row, group, status)
     for call in CALLS:
         if not (group and call.is_for_all):
             yield prefix + call.address, partial(_of_call, call)
@@ -117,14 +110,14 @@ def _put(root: Node, address: str, described: Node) -> None:
     node.update(described)
 
 
-def _of_param(param: Param, group: str, snapshot: Callable[[str], Snapshot]) -> Node:
-    value = snapshot(group).values[param.address]
+def _of_param(param: Param, group: str, values: Values) -> Node:
+    value = values(group)[param.address]
     doc = f"{param.doc} At {AS_UNIT[1:]} below, the same as 0 to 1."
     return _of_number(value, param.lo, param.hi, doc) | _units([param.unit])
 
 
-def _of_unit(param: Param, group: str, snapshot: Callable[[str], Snapshot]) -> Node:
-    value = param.to_unit(snapshot(group).values[param.address])
+def _of_unit(param: Param, group: str, values: Values) -> Node:
+    value = param.to_unit(values(group)[param.address])
     return _of_number(value, 0.0, 1.0, f"{param.doc} As 0 to 1.")
 
 
@@ -139,8 +132,8 @@ def _of_number(value: float, lo: float, hi: float, doc: str) -> Node:
     }
 
 
-def _of_status(row: AnyValue | PartValue, group: str, snapshot: Callable[[str], Snapshot]) -> Node:
-    value = as_argument(snapshot(group).status[row.name])
+def _of_status(row: AnyValue | PartValue, group: str, status: Status) -> Node:
+    value = as_argument(status(group)[row.name])
     described = {"ACCESS": READ, "TYPE": _type(value), "VALUE": [_json(value)]}
     return described | {"DESCRIPTION": row.doc} | _units([row.unit])
 

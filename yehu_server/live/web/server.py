@@ -161,17 +161,14 @@ class WebServer:
         for name in wanted:
             if name not in query.ATTRIBUTES:
                 raise web.HTTPBadRequest(text=one_line(f"unknown attribute {name!r}") + "\n")
-        more = more_calls(self._context.players)
-        node = query.node_at(request.path, self._snapshot, self._parts, more)
+        context, more = self._context, more_calls(self._context.players)
+        node = query.node_at(request.path, context.values, context.status, self._parts, more)
         if node is None:
             raise web.HTTPNotFound(text=one_line(f"nothing at {request.path}") + "\n")
         if not wanted:
             return _json(node)
         found = {name: node[name] for name in wanted if name in node}
         return _json(found) if found else web.Response(status=204, headers=HEADERS)
-
-    def _snapshot(self, group: str) -> query.Snapshot:
-        return query.Snapshot(self._context.values(group), self._context.status(group))
 
     def _host_info(self, request: web.Request) -> dict[str, Any]:
         # The address by which the client reached this machine, which may have several.

@@ -17,7 +17,6 @@ Address = tuple[str, int]
 # Where a server listens by default, and where commands search for it.
 OSC_ADDRESS: Address = ("127.0.0.1", 9000)
 HTTP_ADDRESS: Address = ("127.0.0.1", 9001)
-MAX_KNOWN = 1 << 16
 # A host's name, or its address in IPv4: labels of 1 to 63 characters, and a final full stop or not.
 _LABEL = r"[A-Za-z0-9_](?:[A-Za-z0-9_-]{0,61}[A-Za-z0-9_])?"
 _NAME = re.compile(rf"{_LABEL}(?:\.{_LABEL})*\.?")
@@ -34,7 +33,7 @@ class Allowed:
 
     def __init__(self, networks: Iterable[str] = ()) -> None:
         self._networks: list[Network] = []
-        self._known: dict[str, bool] = {}
+        self._has = lru_cache(maxsize=1 << 16)(self._find)
         for text in networks:
             try:
                 self._networks.append(ipaddress.ip_network(text, strict=False))
@@ -43,14 +42,11 @@ class Allowed:
 
     def __contains__(self, host: str) -> bool:
         """Whether a host (an IP address) may send."""
-        if not self._networks:
-            return True
-        if host not in self._known:
-            if len(self._known) > MAX_KNOWN:
-                self._known.clear()
-            address = ipaddress.ip_address(plain(host))
-            self._known[host] = any(address in network for network in self._networks)
-        return self._known[host]
+        return not self._networks or self._has(host)
+
+    def _find(self, host: str) -> bool:
+        address = ipaddress.ip_address(plain(host))
+        return any(address in network for network in self._networks)
 
 
 @lru_cache(maxsize=1024)

@@ -42,8 +42,7 @@ class Pages(Supervisor):
     `memory`: file descriptor of the memory that has the instruments.
     `status`: what pages are sent of the server, of JSON's types; any thread may call.
     `on_message`: called with a line when the process had to be started again; from another thread.
-    `rigs`: the instrument that shows each part: by default the first shows the first part, and so
-    on.
+    `rigs`: the instrument that shows each part.
     """
 
     def __init__(
@@ -53,10 +52,10 @@ class Pages(Supervisor):
         memory: int,
         status: Callable[[], Mapping[str, Any]],
         on_message: Callable[[str], None],
-        rigs: Sequence[int] | None = None,
+        rigs: Sequence[int],
     ) -> None:
         self._players = tuple(players)
-        self._rigs = list(range(len(players)) if rigs is None else rigs)
+        self._rigs = rigs
         self._options = options
         self._memory = memory
         self._status = status

@@ -59,6 +59,11 @@ def test_each_part_has_its_own_mapping_preset_and_settings():
     assert third.settings == (volume, ("/room/pan", -0.25))
 
 
+def test_a_part_with_a_mapping_of_its_own_is_not_asked_for_mpe():
+    options = served("--parts", "2", "--mpe", "--part-mapping", "2=wind")
+    assert [part.playing.mapping.mpe for part in options.parts] == [True, False]
+
+
 def test_each_part_has_its_own_instrument():
     erhu, ideal = (
         str(shipped_folder("examples") / f"{name}.toml") for name in ("erhu", "ideal_string")

@@ -203,11 +203,14 @@ def test_one_who_reads_nothing_holds_up_nobody(connect, shared_web, until):
 
 
 def test_what_a_peer_does_not_take_is_dropped_and_counted():
-    traffic, calls, sent, unsent = WebTraffic(), [], [], 0
+    traffic, calls, later, sent, unsent = WebTraffic(), [], [], [], 0
     transport = SimpleNamespace(
         is_closing=lambda: False, get_write_buffer_size=lambda: unsent, write=sent.append
     )
-    loop = SimpleNamespace(call_soon_threadsafe=lambda *call: calls.append(call))
+    loop = SimpleNamespace(
+        call_soon_threadsafe=lambda *call: calls.append(call),
+        call_later=lambda _s, call: later.append(call),
+    )
     peer = WebPeer("deaf", transport, loop, traffic)
     for _ in range(3 * limits.UNSENT // 1000):
         peer.send(bytes(1000))
@@ -219,8 +222,15 @@ def test_what_a_peer_does_not_take_is_dropped_and_counted():
     assert len(sent) == len(calls)
     assert peer.takes_more
     unsent = limits.UNSENT + 1  # the other end reads none
+    peer.write(b"")
+    assert not peer.takes_more
+    dropped = traffic.unsent
     peer.send(b"lost")
-    assert len(sent) == len(calls)
+    assert traffic.unsent == dropped + 1
+    unsent = 0
+    (measure,) = later
+    measure()
+    assert peer.takes_more
 
 
 def test_one_who_vanishes_is_forgotten_with_all_it_asked_for(shared_web, port, until):

@@ -20,7 +20,7 @@ from yehu_server.params.table import PREFIX
 
 HEARTBEAT_S = 20.0  # a socket that does not answer within half of this is closed
 CLOSING_S = 0.3
-BEHIND_S = 0.005
+BEHIND_S, MEASURE_S = 0.005, 0.02
 
 
 class WebPeer(Peer):
@@ -40,11 +40,12 @@ class WebPeer(Peer):
         self._transport = transport
         self._loop = loop
         self._traffic = traffic
-        self._sent, self._passed_on = 0, 0  # bytes, each counted by one thread
+        self._sent, self._passed_on, self._buffered = 0, 0, 0  # bytes, each counted by one thread
+        self._measures = False
 
     @property
     def _unsent_bytes(self) -> int:
-        return self._sent - self._passed_on + self._transport.get_write_buffer_size()
+        return self._sent - self._passed_on + self._buffered
 
     @property
     def takes_more(self) -> bool:
@@ -67,6 +68,18 @@ class WebPeer(Peer):
     def write(self, frame: bytes) -> None:
         """Write a frame; for the web's thread."""
         self._traffic.unsent += not write(self._transport, frame, limits.UNSENT)
+        if not self._measures:
+            self._measure()
+
+    def _measure(self) -> None:
+        """Note what the other end has not read, from time to time until it has read all.
+
+        Only the web's thread may ask the transport.
+        """
+        self._buffered = self._transport.get_write_buffer_size()
+        self._measures = self._buffered > 0 and not self._transport.is_closing()
+        if self._measures:
+            self._loop.call_later(MEASURE_S, self._measure)
 
 
 class WebSockets:

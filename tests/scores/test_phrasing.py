@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from shaping import phrased
 
-from yehu_server.scores.phrases import phrases_of
 from yehu_server.scores.phrasing import LEAST_FOR_BOWS
-from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, notes_of
+from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, notes_of, phrases_of
 
 BEAT_S = 0.5
 

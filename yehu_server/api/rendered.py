@@ -28,8 +28,7 @@ from yehu_server.playing.mapping import DEFAULT
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
-from yehu_server.rendering.to_files import NORMALIZED_PEAK
-from yehu_server.rendering.true_peak import TruePeak
+from yehu_server.rendering.to_files import NORMALIZED_PEAK, TruePeak
 from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import Score

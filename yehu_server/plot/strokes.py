@@ -17,7 +17,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.section_instruments import part_specs
+from yehu_server.playing.parts import part_specs
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import PartPlayer

@@ -8,15 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
-from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import EXPRESS
 from yehu_server.core.player.parameter_indices import BEND, INDEX
 from yehu_server.params.table import find
-from yehu_server.playing.parts import number_of_instruments
-from yehu_server.playing.section_instruments import part_specs
+from yehu_server.playing.parts import assemble, number_of_instruments
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
 from yehu_server.rendering.options import Options, Part
 from yehu_server.scores.score import ScoreEvent, Setting, notes_of
@@ -111,22 +108,18 @@ class Performance:
     ) -> None:
         self._options, self._has_stems = options, has_stems
         number_of_instruments([part.playing for part in parts])
-        specs: list[InstrumentSpec] = []
-        self._places: list[slice] = []  # of the instruments of each part
-        for part in parts:
-            playing, rate = part.playing, float(options.rate)
-            own = part_specs(playing, rate, playing.calibration(rate), number=len(specs))
-            self._places.append(slice(len(specs), len(specs) + len(own)))
-            specs += own
-        self.ensemble = Ensemble(
-            specs, channels=options.sound_channels, has_room=not options.is_dry
+        rate = float(options.rate)
+        self.ensemble, by_part = assemble(
+            [part.playing for part in parts],
+            rate,
+            [part.playing.calibration(rate) for part in parts],
+            is_live=False,
+            channels=options.sound_channels,
+            has_room=not options.is_dry,
         )
         for instrument in self.ensemble.instruments if reports else ():
             instrument.report_commands()
-        self.players = [
-            PartPlayer(part, self.ensemble.instruments[place])
-            for part, place in zip(parts, self._places, strict=True)
-        ]
+        self.players = [PartPlayer(*each) for each in zip(parts, by_part, strict=True)]
         self.instrument, self.player = self.ensemble.first, self.players[0].player
         duration_s = max(part.score.duration_s for part in parts)
         self.score_frames = self.instrument.frames(duration_s * 1e3)
@@ -194,8 +187,9 @@ class Performance:
         is_mono = self._options.is_mono
         if self._has_stems:
             stems = cores.stems.mean(axis=2) if is_mono else cores.stems
-            own = [stems[:, place].sum(axis=1) for place in self._places]
-            self.stems = [stem.astype(np.float32) for stem in (*own, stems[:, -1])]
+            ends = np.cumsum([len(player.instruments) for player in self.players])
+            own = [part.sum(axis=1) for part in np.split(stems, ends, axis=1)]  # the room is last
+            self.stems = [stem.astype(np.float32) for stem in own]
         return out.reshape(-1) if is_mono else out
 
     def _pitches(self) -> list[float | None]:

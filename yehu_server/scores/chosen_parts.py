@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
 from yehu_server.scores.octaves import NoteSpan, octaves_of
-from yehu_server.scores.phrases import REST_S
-from yehu_server.scores.score import Score, ScorePart, notes_of
-from yehu_server.scores.smf.tunings import RPN_FINE, transposed_keys
+from yehu_server.scores.score import REST_S, Score, ScorePart, notes_of
+from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
 from yehu_server.scores.written.notated import Written
 
 MOST_NAMED = 8  # parts in a line
-MPE_CONFIGURATION = 6
 ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
 
 
@@ -68,7 +67,7 @@ def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
     names = [part.name for part in score.parts]
     parts: list[list[NoteSpan]] = [[] for _ in names]
     for note in notes_of(score):
-        at = _number_of(score.parts, note.channel, score.events[note.begins].track)
+        at = number_of(score.parts, note.channel, score.events[note.begins].track)
         if at is not None:
             parts[at].append(NoteSpan(note.start_s, note.end_s, (float(note.key),)))
     tune = melodic_part(names, parts, within)
@@ -97,15 +96,13 @@ def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
 
 def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
     """A score with the notes of some of its parts alone."""
-    heard = {(part.channel, part.track) for part in kept}
-    events = []
-    for event in score.events:
-        message = event.message
-        if message.type == "note_on" and message.velocity > 0:
-            places = {(message.channel, None), (None, event.track), (message.channel, event.track)}
-            if heard.isdisjoint(places):
-                continue
-        events.append(event)
+    events = (
+        event
+        for event in score.events
+        if event.message.type != "note_on"
+        or event.message.velocity == 0
+        or number_of(kept, event.message.channel, event.track) is not None
+    )
     return replace(score, events=tuple(events), parts=tuple(kept))
 
 
@@ -120,20 +117,16 @@ def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Sc
     by_part: dict[str, list[int]] = {}
     for number, note in enumerate(notes):
         track = score.events[note.begins].track
-        name = "" if is_mpe else _name(score.parts, note.channel, track)
-        by_part.setdefault(name, []).append(number)
+        at = number_of(score.parts, note.channel, track)
+        own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
+        by_part.setdefault("" if is_mpe else own_name, []).append(number)
     moves: dict[int, int] = {}  # of events, in semitones
     parts = []
     for name, numbers in by_part.items():
         own = [notes[number] for number in numbers]
-        octaves = octaves_of(
-            [
-                NoteSpan(note.start_s, note.end_s, (note.key + transposed.get(note.begins, 0.0),))
-                for note in own
-            ],
-            REST_S,
-            within,
-        )
+        pitches = [note.key + transposed.get(note.begins, 0.0) for note in own]
+        spans = [NoteSpan(n.start_s, n.end_s, (p,)) for n, p in zip(own, pitches, strict=True)]
+        octaves = octaves_of(spans, REST_S, within)
         if octaves.summary:
             parts.append((name, octaves.summary))
         for note, by in zip(own, octaves.of_notes, strict=True):
@@ -144,25 +137,16 @@ def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Sc
                     moves[note.ends] = 12 * by
     if not any(moves.values()):
         return score
-    events = []
-    for number, event in enumerate(score.events):
-        by = moves.get(number, 0)
-        if by:
-            message = event.message.copy(note=event.message.note + by)
-            events.append(replace(event, message=message))
-        else:
-            events.append(event)
+    events = list(score.events)
+    for number, by in moves.items():
+        message = events[number].message
+        events[number] = replace(events[number], message=message.copy(note=message.note + by))
     line = line_of([("" if len(by_part) == 1 else name, how) for name, how in parts], within)
     remarks = (*score.remarks, *filter(None, (line.replace(":  ", ": "),)))
     return replace(score, events=tuple(events), remarks=remarks)
 
 
-def _name(parts: Sequence[ScorePart], channel: int, track: int) -> str:
-    at = _number_of(parts, channel, track)
-    return f"channel {channel + 1}" if at is None else parts[at].name
-
-
-def _number_of(parts: Sequence[ScorePart], channel: int, track: int) -> int | None:
+def number_of(parts: Sequence[ScorePart], channel: int, track: int) -> int | None:
     """The number, from 0, of the part that has what a channel plays in a track."""
     for at, part in enumerate(parts):
         if part.channel in (channel, None) and part.track in (track, None):

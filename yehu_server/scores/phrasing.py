@@ -15,9 +15,8 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.scores.phrases import phrases_of
 from yehu_server.scores.rubato import delayed
-from yehu_server.scores.score import Score, ScoreNote, notes_of
+from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of
 from yehu_server.scores.slides import with_slides
 
 PHRASING = 0.5  # of files, where nothing else is asked for

@@ -14,8 +14,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from yehu_server.core.midi.channels import PERCUSSION
-from yehu_server.scores.phrases import phrases_of
-from yehu_server.scores.score import Score, ScoreNote, notes_of
+from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of
 
 # At full rubato: a beat at either end of a phrase is two thirds of this longer, one in its middle a
 # third shorter.

@@ -26,7 +26,8 @@ from yehu_server.scores.jianpu.note_words import (
     quarters,
 )
 from yehu_server.scores.jianpu.scale import Scale
-from yehu_server.scores.jianpu.text import Word, failure, printable
+from yehu_server.scores.jianpu.text import Word, failure
+from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO, Grace
 from yehu_server.scores.written.words import Meaning
 

@@ -20,13 +20,14 @@ from yehu_server.scores.jianpu.mark_words import IGNORED_HEADERS
 from yehu_server.scores.jianpu.parser import PartParser
 from yehu_server.scores.jianpu.part import PartBuilder
 from yehu_server.scores.jianpu.scale import Scale
-from yehu_server.scores.jianpu.text import Header, Word, decoded, printable, words_of
+from yehu_server.scores.jianpu.text import Header, Word, decoded, words_of
 from yehu_server.scores.score import (
     COMMON_TIME,
     KeySignature,
     Metre,
     naming,
     nearest_key,
+    printable,
     read_score_bytes,
 )
 from yehu_server.scores.written import notated

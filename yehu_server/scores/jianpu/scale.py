@@ -7,7 +7,8 @@ from collections.abc import Mapping
 
 from yehu_server.scores.jianpu.characters import DEFAULT_MODE, ERSIPU, is_living, semitones_of
 from yehu_server.scores.jianpu.note_words import MAJOR, MOST_OCTAVES, Figure
-from yehu_server.scores.jianpu.text import Word, failure, printable
+from yehu_server.scores.jianpu.text import Word, failure
+from yehu_server.scores.score import printable
 from yehu_server.scores.written.layout import SEMITONES
 
 MIDDLE_C = 60.0

@@ -9,8 +9,8 @@ from xml.etree.ElementTree import Element
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
-from yehu_server.scores.musicxml.marks import NoteMarks, neighbour, number, printable
-from yehu_server.scores.score import nearest_key
+from yehu_server.scores.musicxml.marks import VALUES, NoteMarks, neighbour, number
+from yehu_server.scores.score import nearest_key, printable
 from yehu_server.scores.written.layout import SEMITONES
 from yehu_server.scores.written.notated import MOST_BEATS, MOST_NOTES
 from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
@@ -18,11 +18,6 @@ from yehu_server.scores.written.voices import FINEST, RawBar, RawDirection, RawN
 
 MOST_DIVISIONS = 1 << 20  # of a quarter note
 LOWEST, HIGHEST = 0.0, 127.0  # MIDI notes
-TYPES = {
-    "maxima": Fraction(32), "long": Fraction(16), "breve": Fraction(8), "whole": Fraction(4),
-    "half": Fraction(2), "quarter": Fraction(1), "eighth": Fraction(1, 2), "16th": Fraction(1, 4),
-    "32nd": Fraction(1, 8), "64th": Fraction(1, 16), "128th": Fraction(1, 32),
-}  # fmt: skip
 _NUMBERS = re.compile(r"\d+")
 # What is printed, or sounds by other means than this instrument.
 PRINTED = {
@@ -195,7 +190,7 @@ class BarReader:
             raise ScoreError(f"has more than {MOST_NOTES} notes")
         note.pitch = pitch
         if note.is_grace:
-            note.length = TYPES.get((element.findtext("type") or "").strip(), Fraction(1, 2))
+            note.length = VALUES.get((element.findtext("type") or "").strip(), Fraction(1, 2))
             grace = element.find("grace")
             note.is_after = grace is not None and grace.get("steal-time-previous") is not None
         elif length == 0:

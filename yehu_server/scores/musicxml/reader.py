@@ -22,8 +22,7 @@ from xml.parsers import expat
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.bars import BarReader
-from yehu_server.scores.musicxml.marks import printable
-from yehu_server.scores.score import naming, read_score_bytes
+from yehu_server.scores.score import naming, printable, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MOST_BYTES, MOST_PARTS, Written
 

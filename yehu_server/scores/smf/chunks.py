@@ -11,8 +11,7 @@ import struct
 from dataclasses import dataclass, field
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.track import Track, decode
+from yehu_server.scores.smf.track import DamageReport, Track, decode
 
 JUNK_BYTES = 65_536  # among which a header is searched
 HEADER = b"MThd\0\0\0"  # with the length that all headers have, so that prose is none

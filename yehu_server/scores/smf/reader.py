@@ -35,8 +35,7 @@ from yehu_server.scores.score import (
     read_score_bytes,
 )
 from yehu_server.scores.smf.chunks import Part, read_parts, unwrapped
-from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.track import SMPTE, Clock, Placed, Track, checked_division
+from yehu_server.scores.smf.track import SMPTE, Clock, DamageReport, Placed, Track, checked_division
 from yehu_server.scores.smf.tunings import retuned
 
 # Controllers: all sound off, all notes off, and changes of mode, which end notes too.

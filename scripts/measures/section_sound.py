@@ -10,7 +10,7 @@ import numpy as np
 from measures.life import pitch_track
 from measures.section_take import SectionTake
 from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.player.calibration import OPEN_NOTES
+from yehu_server.core.player.note_tables import OPEN_NOTES
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key

@@ -23,11 +23,11 @@ from yehu_lab.sweeps.axes import Axis
 from yehu_server.core.physics.elementary import log
 from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, TEXTURE, V_B, X_B
 from yehu_server.core.physics.quantities import Quantities, override
-from yehu_server.core.player.calibration import (
+from yehu_server.core.player.note_tables import (
     OPEN_NOTES,
     PITCHES,
     SPEEDS,
-    Calibration,
+    NoteTables,
     frequency_hz,
     ideal_position,
 )
@@ -92,7 +92,7 @@ class Tuned:
     `measured`: the instrument that was calibrated, before it was tuned.
     """
 
-    calibration: Calibration
+    calibration: NoteTables
     quantities: Quantities
     measured: Quantities
 

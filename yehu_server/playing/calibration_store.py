@@ -19,13 +19,13 @@ import numpy as np
 from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import (
+from yehu_server.core.player.note_tables import (
     GAINS,
     OPEN_NOTES,
     PITCHES,
     ROWS_OF_A_YEHU,
     SPEEDS,
-    Calibration,
+    NoteTables,
     Tables,
 )
 from yehu_server.errors import ParameterError
@@ -55,7 +55,7 @@ LEAST_N, MOST_N = 1.0, 500.0
 HIGHEST_KEY = 127
 
 
-_unkept: dict[str, Calibration] = {}  # what could not be written, by its key
+_unkept: dict[str, NoteTables] = {}  # what could not be written, by its key
 
 
 def calibration_for(
@@ -65,7 +65,7 @@ def calibration_for(
     a4: float = 440.0,
     bowing: Any = None,
     progress: Progress | None = None,
-) -> Calibration:
+) -> NoteTables:
     """Find the calibration of an instrument, or measure it, in some seconds.
 
     `rate`: sample rate (Hz).
@@ -90,7 +90,7 @@ def calibration_for(
     return found
 
 
-def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibration:
+def read_calibration(data: Any, quantities: Quantities, a4: float) -> NoteTables:
     """Read the JSON values of a calibration of an instrument.
 
     Raises ParameterError where they are none, are for another pitch, or beyond what can be
@@ -107,7 +107,7 @@ def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibratio
     return found
 
 
-def read_measured(data: Any) -> Calibration:
+def read_measured(data: Any) -> NoteTables:
     """Read the JSON values of a calibration, of whatever instrument.
 
     Raises ParameterError where they are none, or beyond what can be measured.
@@ -130,9 +130,7 @@ def read_measured(data: Any) -> Calibration:
     if inner >= outer:
         raise ParameterError(f"open strings of {inner} and {outer}: expected the lower one first")
     tensions, open_notes = (first, second), (inner, outer)
-    return Calibration(
-        a4, tensions, sharpening, levels, open_notes, tuple(centroids), tuple(louder)
-    )
+    return NoteTables(a4, tensions, sharpening, levels, open_notes, tuple(centroids), tuple(louder))
 
 
 def _tables(data: Any, more_rows: int, columns: int, lo: float, hi: float) -> Tables:
@@ -158,7 +156,7 @@ def _shipped() -> dict[str, Any]:
     return found
 
 
-def _kept(path: Path, quantities: Quantities, a4: float) -> Calibration | None:
+def _kept(path: Path, quantities: Quantities, a4: float) -> NoteTables | None:
     """The calibration in a file; None where there is none, or it is damaged."""
     try:
         payload = read_checksummed(path)

@@ -11,8 +11,8 @@ from typing import Any
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, read_quantities
-from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.playing.bowing_tables import (
     bowing_table_beside,
@@ -96,7 +96,7 @@ class PlayingOptions:
         rubato = phrasing if self.rubato is None else self.rubato
         return replace(self, phrasing=phrasing, rubato=rubato)
 
-    def calibration(self, rate: float, progress: Progress | None = None) -> Calibration:
+    def calibration(self, rate: float, progress: Progress | None = None) -> NoteTables:
         """The calibration of the instrument, bowed so; see `calibration_for`."""
         return calibration_for(
             rate, self.quantities, a4=self.a4, bowing=self.bowing, progress=progress
@@ -112,7 +112,7 @@ class PlayingOptions:
     def spec(
         self,
         rate: float,
-        calibration: Calibration,
+        calibration: NoteTables,
         *,
         start_values: Values[str, float] | None = None,
         body: int = 0,

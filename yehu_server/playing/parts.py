@@ -22,7 +22,7 @@ from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN,
 from yehu_server.core.physics.elementary import exp2, sin_and_cos
 from yehu_server.core.physics.quantities import Body, Quantities, StringQuantities
 from yehu_server.core.physics.radiation import pole_of
-from yehu_server.core.player.calibration import Calibration
+from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
@@ -49,7 +49,7 @@ def section_size(playing: PlayingOptions) -> int:
 
 
 def part_specs(
-    playing: PlayingOptions, rate: float, calibration: Calibration, *, number: int
+    playing: PlayingOptions, rate: float, calibration: NoteTables, *, number: int
 ) -> list[InstrumentSpec]:
     """The instruments of a part: one, or those of a section; see `section_specs`.
 
@@ -62,7 +62,7 @@ def part_specs(
 
 
 def section_specs(
-    playing: PlayingOptions, rate: float, calibration: Calibration, *, players: int
+    playing: PlayingOptions, rate: float, calibration: NoteTables, *, players: int
 ) -> list[InstrumentSpec]:
     """The instruments of a section; the first has that of ``PlayingOptions.spec``.
 
@@ -85,8 +85,8 @@ def section_specs(
 
 
 def vary(
-    calibration: Calibration, quantities: Quantities, seed: int
-) -> tuple[Calibration, Quantities]:
+    calibration: NoteTables, quantities: Quantities, seed: int
+) -> tuple[NoteTables, Quantities]:
     """Another instrument of the same maker, tuned by its player.
 
     The strings' tensions follow their densities, so that it is in tune with the first.
@@ -179,7 +179,7 @@ def seated(per_part: Sequence[PlayingOptions]) -> list[PlayingOptions]:
 def assemble(
     per_part: Sequence[PlayingOptions],
     rate: float,
-    tuned: Sequence[Calibration],
+    tuned: Sequence[NoteTables],
     *,
     is_live: bool = True,
     **stage: Any,

@@ -21,8 +21,8 @@ from yehu_server.core.physics.quantities import (
     override,
 )
 from yehu_server.core.player.bowing import NOTES, default_bowing_table
-from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import read_measured
@@ -150,7 +150,7 @@ def _start(
     )
 
 
-def _calibration(data: Any, before: Sequence[InstrumentSpec]) -> Calibration | None:
+def _calibration(data: Any, before: Sequence[InstrumentSpec]) -> NoteTables | None:
     if data is None:
         return None
     if type(data) is int:

@@ -188,20 +188,20 @@ class Watched(Instrument):
 class Checked(Player):
     """Commands to a `Watched`: what they tell must be what its player holds."""
 
-    _instrument: Watched
+    instrument: Watched
 
     @property
     def sounding(self) -> Key | None:
         told = super().sounding
-        assert told == self._instrument.sounding
+        assert told == self.instrument.sounding
         return told
 
     def held(self, channel: int | None = None) -> list[Key]:
-        assert super().held() == self._instrument.held
+        assert super().held() == self.instrument.held
         return super().held(channel)
 
     def value(self, address: str) -> float:
         told = super().value(address)
         if not find(address).player_controlled:
-            assert told == self._instrument.requested(address)
+            assert told == self.instrument.requested(address)
         return told

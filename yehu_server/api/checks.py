@@ -113,18 +113,16 @@ def quantities_of(instrument: InstrumentLike | None) -> Quantities:
     return read_quantities(path_of(instrument, "instrument"))
 
 
-def path_of(value: Any, name: str) -> Path:
-    """Return a path; raises ParameterError where it is none."""
-    if not isinstance(value, str | os.PathLike):
-        raise ParameterError(f"{name}: expected a path, got {type(value).__name__}")
-    return Path(value)
-
-
 def name_of(value: Any, what: str) -> str:
     """Return a name or a path as text; raises ParameterError where it is neither."""
     if not isinstance(value, str | os.PathLike):
         raise ParameterError(f"{what}: expected a name or a path, not {value!r}")
     return os.fspath(value)
+
+
+def path_of(value: Any, name: str) -> Path:
+    """Return a path; raises ParameterError where it is none."""
+    return Path(name_of(value, name))
 
 
 OutOfRange = Literal["transpose", "clamp", "skip"]

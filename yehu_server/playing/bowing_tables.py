@@ -23,6 +23,7 @@ from yehu_server.util.parsing import parse_json
 Array = Any
 
 SHIPPED = Path(__file__).parent / "practices.json"
+ENDING = ".practice.json"
 FORMAT, VERSION = "yehu-server practice", 2
 MOST_BYTES = 1 << 20
 # Bounds of top speed (m/s), three shares of Schelleng's limit, distance, finger force (N).
@@ -104,15 +105,9 @@ def read_bowing_table(path: Path) -> Array:
 
 
 def bowing_table_beside(instrument: Path | None) -> Path | None:
-    """The bowing table beside an instrument file, of the same name and ``.practice.json``."""
-    return next((path for path in bowing_tables_beside(instrument) if path.is_file()), None)
-
-
-def bowing_tables_beside(instrument: Path | None) -> list[Path]:
-    """Where the bowing table of an instrument file would be, whether it is there or not."""
-    if instrument is None or not instrument.name:
-        return []
-    return [instrument.with_suffix(".practice.json")]
+    """The bowing table beside an instrument file, of the same name and `ENDING`, if it is there."""
+    path = instrument.with_suffix(ENDING) if instrument is not None and instrument.name else None
+    return path if path is not None and path.is_file() else None
 
 
 def write_bowing_table(path: Path, table: Array, rate: float) -> None:

@@ -105,12 +105,6 @@ def _start(address: str, value: Any) -> float:
     return settable_param(address, "set one").within(value)
 
 
-def read_span(value: Any, param: Param | None) -> tuple[float, float]:
-    """Read two values within the range of a parameter, if that is known."""
-    lo, hi = (param.lo, param.hi) if param else (-math.inf, math.inf)
-    return read_pair(value, "[from, to]", lo, hi)
-
-
 def read_input_range(value: Any) -> tuple[float, float]:
     """Read two different numbers."""
     lo, hi = read_pair(value, "[from, to]")
@@ -180,7 +174,8 @@ def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
         "target", lambda value: settable_param(line(value), "map to one"), None
     )
     curve: Curve | Breakpoints | None = table.read("curve", read_curve, None)
-    span = table.read("span", read_span, None, param)
+    lo, hi = (param.lo, param.hi) if param else (-math.inf, math.inf)
+    span = table.read("span", read_pair, None, "[from, to]", lo, hi)
     bind = Bind(
         source or "",
         param.address if param else "",

@@ -15,8 +15,8 @@ from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.playing.bowing_tables import (
+    ENDING,
     bowing_table_beside,
-    bowing_tables_beside,
     read_bowing_table,
     shipped_bowing_table,
 )
@@ -105,9 +105,9 @@ class PlayingOptions:
     @property
     def files(self) -> tuple[Path, ...]:
         """All files that it was read from, and where a bowing table was searched for."""
-        named = [path for path in (self.preset, self.practice, self.instrument) if path is not None]
-        beside = bowing_tables_beside(self.instrument)
-        return (*self.mapping.files, *named, *beside, *self.tuning.files)
+        beside = self.instrument and self.instrument.with_suffix(ENDING)
+        named = filter(None, (self.preset, self.practice, self.instrument, beside))
+        return (*self.mapping.files, *named, *self.tuning.files)
 
     def spec(
         self,
@@ -153,6 +153,5 @@ class PlayingOptions:
 
     def mapped(self, player: Player) -> Player:
         """A player that plays by the mapping from the beginning on; see `Player.mapped`."""
-        channels = None if self.channels is None else set(self.channels)
         programs = self.presets.programs() if self.programs else None
-        return player.mapped(self.mapping, channels, start=self.start, programs=programs)
+        return player.mapped(self.mapping, self.channels, start=self.start, programs=programs)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import tomlkit
@@ -24,12 +25,16 @@ MOST_OWN = 128  # as many as there are MIDI programs
 MOST_BYTES = 1 << 14  # of one preset; all values take under 1000, the rest is for comments
 MOST_NAMED = 20  # names in an error message
 EMPTY = f'version = {VERSION}\nabout = ""\n\n[values]\n'
-Stamp = tuple[int, int]
 
 
 def read_preset(path: Path, name: str | None = None) -> Preset:
     """Read a preset from a file; raises PresetError, naming the file, or `name`."""
     return preset_from(document_of(name or path).read(path, MOST_BYTES), name or path.stem)
+
+
+@lru_cache(maxsize=4 * MOST_OWN)
+def _read_once(path: Path, name: str, _mtime_ns: int, _size: int) -> Preset:
+    return read_preset(path, name)
 
 
 def is_name(name_or_path: str) -> bool:
@@ -64,8 +69,6 @@ class Presets:
         self._own_first = user_first
         self.own = own or user_config_path("yehu-server") / "presets"
         self.shipped = shipped_folder("presets")
-        # The presets read, or why they could not be.
-        self._known: dict[Path, tuple[Stamp, Preset | str]] = {}
 
     def names(self) -> list[str]:
         """All names, sorted."""
@@ -182,15 +185,8 @@ class Presets:
         try:
             status = path.stat()
         except OSError as error:
-            self._known.pop(path, None)
             raise PresetError(f"{name}: {error.strerror}") from error
-        stamp = (status.st_mtime_ns, status.st_size)
-        known = self._known.get(path)
-        if known is None or known[0] != stamp:
-            known = self._known[path] = (stamp, _tried(path, name))
-        if isinstance(known[1], str):
-            raise PresetError(known[1])
-        return known[1]
+        return _read_once(path, name, status.st_mtime_ns, status.st_size)
 
     def _own_file(self, name: str) -> Path:
         """The path of an own preset; raises PresetError for what is no plain name, as `inside`."""
@@ -212,13 +208,6 @@ def _is_there(path: Path) -> bool:
         return False
     except OSError:  # such as a loop of links
         return True
-
-
-def _tried(path: Path, name: str) -> Preset | str:
-    try:
-        return read_preset(path, name)
-    except PresetError as error:
-        return str(error)
 
 
 def _names(folder: Path) -> list[str]:

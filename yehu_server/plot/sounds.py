@@ -132,16 +132,9 @@ def pitch(
 
 
 def sound_of(sound: Any, sample_rate: float | None = None) -> tuple[Array, float]:
-    """Return the samples and the rate (Hz) of what has a sound.
+    """Return the samples and the rate (Hz) of what has a sound, as of `spectrogram`.
 
-    Parameters
-    ----------
-    sound : Rendering, Simulation or ndarray [shape=(frames,) or (frames, channels)]
-
-    Raises
-    ------
-    ParameterError
-        Where it is no sound, or the rate is missing.
+    Raises ParameterError where it is no sound, or the rate is missing.
     """
     if hasattr(sound, "arrays") and hasattr(sound, "meta"):
         arrays = sound.arrays

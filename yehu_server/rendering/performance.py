@@ -16,6 +16,7 @@ from yehu_server.params.table import find
 from yehu_server.playing.parts import assemble, number_of_instruments
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
 from yehu_server.rendering.options import Options, Part
+from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.score import ScoreEvent, Setting, notes_of
 
 END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
@@ -128,11 +129,20 @@ class Performance:
         self.stems: list[Samples] = []
         self.target_pitches: list[float | None] = []
 
-    def blocks(self) -> Iterator[Samples]:
+    def blocks(self, progress: ProgressCallback | None = None) -> Iterator[Samples]:
         """Yield the samples of score and tail, relative to full scale.
 
-        They have the shape (frames, 2), or (frames,) where `Options.is_mono`.
+        They have the shape (frames, 2), or (frames,) where `Options.is_mono`. `progress` is called
+        after each with the seconds done and those of the score.
         """
+        done = 0
+        for samples in self._blocks():
+            yield samples
+            done += len(samples)
+            if progress is not None:
+                progress(done / self._options.rate, self.score_frames / self._options.rate)
+
+    def _blocks(self) -> Iterator[Samples]:
         options = self._options
         is_ahead = options.cores > 1 and options.block >= LEAST_AHEAD
         own = min(options.cores, len(self.ensemble.instruments))

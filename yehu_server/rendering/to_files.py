@@ -19,6 +19,7 @@ from yehu_server.rendering.performance import Performance, Samples
 from yehu_server.rendering.pipe import sound_pipe
 from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
+from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.files import anything, why
 from yehu_server.util.sound_file import SoundWriter, sound_file
@@ -38,7 +39,7 @@ _HALF = (
 )  # fmt: skip
 PHASES = (_QUARTER, _HALF, _HALF[::-1], _QUARTER[::-1])
 TAPS = len(_QUARTER)
-MOST = max(sum(map(abs, phase)) for phase in PHASES)  # gain of the worst wave
+WORST_GAIN = max(sum(map(abs, phase)) for phase in PHASES)
 
 
 class TruePeak:
@@ -71,7 +72,7 @@ class TruePeak:
     def _hear(self, x: Array) -> None:
         highest = float(np.abs(x).max(initial=0.0))
         self.peak = max(self.peak, highest)
-        if len(x) >= TAPS and highest * MOST > self.peak:
+        if len(x) >= TAPS and highest * WORST_GAIN > self.peak:
             for phase in PHASES:
                 between = np.convolve(x, phase, "valid")
                 self.peak = max(self.peak, float(np.abs(between).max()))
@@ -128,7 +129,7 @@ def render(
     parts: Sequence[Part],
     target: Path,
     options: Options,
-    progress: Callable[[float, float], None] | None = None,
+    progress: ProgressCallback | None = None,
     may_replace: Callable[[Path], bool] = anything,
     stems: Sequence[Path] = (),
     watch: PlotData | None = None,
@@ -155,7 +156,7 @@ def render(
 
     with contextlib.ExitStack() as stack:
         files = [stack.enter_context(opened(path)) for path in (target, *stems)]
-        takes = _takes(performance, len(files), options.rate, progress, watch)
+        takes = _takes(performance, len(files), progress, watch)
         if options.normalize:
             write_normalized(takes, files, None if target is PIPE else target.parent)
         else:
@@ -169,26 +170,21 @@ def render(
 def _takes(
     performance: Performance,
     files: int,
-    rate: int,
-    progress: Callable[[float, float], None] | None,
+    progress: ProgressCallback | None,
     watch: PlotData | None,
 ) -> Iterator[list[Samples]]:
     """Yield what goes to each of the files, block by block."""
-    frames, total = 0, performance.score_frames / rate
-    for samples in performance.blocks():
+    for samples in performance.blocks(progress):
         yield [samples, *performance.stems][:files]
-        frames += len(samples)
         if watch is not None:
             watch.take(samples, performance.target_pitches)
-        if progress is not None:
-            progress(frames / rate, total)
 
 
 def render_capture(
     parts: Sequence[Part],
     target: Path,
     options: Options,
-    progress: Callable[[float, float], None] | None = None,
+    progress: ProgressCallback | None = None,
     *,
     overwrite: bool = False,
 ) -> Performance:
@@ -202,14 +198,10 @@ def render_capture(
     capture = LiveCapture(
         performance.ensemble, target, wrong.append, has_room=not options.is_dry, overwrite=overwrite
     )
-    total, frames = performance.score_frames / options.rate, 0
     try:
-        for samples in performance.blocks():
-            frames += len(samples)
+        for _ in performance.blocks(progress):
             capture.keep_up()
             _check(wrong)
-            if progress is not None:
-                progress(frames / options.rate, total)
     except BaseException:
         capture.discard()
         raise

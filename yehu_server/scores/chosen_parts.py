@@ -13,7 +13,7 @@ from yehu_server.scores.score import REST_S, Score, ScorePart, notes_of
 from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
-from yehu_server.scores.written.notated import Written
+from yehu_server.scores.written.notated import Written, listed
 
 MOST_NAMED = 8  # parts in a line
 ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
@@ -34,20 +34,14 @@ def numbers_of(names: Sequence[str], asked: Sequence[str]) -> list[int]:
             same = [int(word[:6]) - 1]
         chosen = same or begun
         if not chosen:
-            more = did_you_mean(text, names) or f"; it has {listed(names)}"
+            more = did_you_mean(text, names) or f"; it has {listed(names, MOST_NAMED)}"
             raise ScoreError(f"has no part {text}{more}")
         if len(chosen) > 1:
-            raise ScoreError(f"part {text} may be {listed([names[at] for at in chosen])}")
+            raise ScoreError(
+                f"part {text} may be {listed([names[at] for at in chosen], MOST_NAMED)}"
+            )
         found.add(chosen[0])
     return sorted(found)
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names for a line: the first of them, and the number of others."""
-    shown = [*names[:MOST_NAMED]]
-    if len(names) > MOST_NAMED:
-        shown.append(f"{len(names) - MOST_NAMED} others")
-    return ", ".join(shown)
 
 
 def says_mpe(score: Score) -> bool:
@@ -74,7 +68,7 @@ def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
     if tune is None or take_turns(parts):
         return score
     others = [name for at, name in enumerate(names) if at != tune]
-    line = f"plays {names[tune]}; also there: {listed(others)} ({ONE_BY_ONE})"
+    line = f"plays {names[tune]}; also there: {listed(others, MOST_NAMED)} ({ONE_BY_ONE})"
     return replace(_only(score, [score.parts[tune]]), remarks=(*score.remarks, line))
 
 
@@ -84,8 +78,8 @@ def others_line(written: Written, plays: Sequence[int]) -> str:
     others = [names[at] for at, part in enumerate(written.parts) if part.notes and at not in plays]
     if not others:
         return ""
-    played = listed([names[at] for at in plays])
-    return f"plays {played}; also there: {listed(others)} ({ONE_BY_ONE})"
+    played = listed([names[at] for at in plays], MOST_NAMED)
+    return f"plays {played}; also there: {listed(others, MOST_NAMED)} ({ONE_BY_ONE})"
 
 
 def parts_chosen(score: Score, asked: Sequence[str]) -> Score:

@@ -139,8 +139,10 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
     shortest = min(string.L for string in quantities.strings)
     for name in ("bow_position", "finger_position"):
         with controls.at(name):
-            curve = curves.get(name, ((0.0, CONTROLS[name].default),))
-            _check_within(curve, quantities.bridge_x)
+            for _, position in curves.get(name, ((0.0, CONTROLS[name].default),)):
+                if not 0.0 < position < quantities.bridge_x:
+                    bridge = f"the bridge ({quantities.bridge_x} m)"
+                    raise ParameterError(f"{position} m is not between the loop (0) and {bridge}")
     has_pluck, has_hammer = (table.data.get(name) is not None for name in ("pluck", "hammer"))
     pluck = _pluck(table.table("pluck"), quantities.bridge_x, shortest) if has_pluck else None
     hammer: Curve = ()
@@ -192,11 +194,3 @@ def _curve(value: Any, lo: float, hi: float, unit: str) -> Curve:
         points.append((time, level))
         last = time
     return tuple(points)
-
-
-def _check_within(curve: Curve, bridge: float) -> None:
-    for _, position in curve:
-        if not 0.0 < position < bridge:
-            raise ParameterError(
-                f"{position} m is not between the loop (0) and the bridge ({bridge} m)"
-            )

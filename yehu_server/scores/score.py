@@ -221,7 +221,7 @@ def notes_of(score: Score) -> list[ScoreNote]:
     A key that is struck again ends its note, as the instrument has it.
     """
     held: dict[tuple[int, int], int] = {}
-    ends: dict[int, int] = {}
+    ends: dict[int, int] = {}  # by the number of a note-on
     for number, event in enumerate(score.events):
         message = event.message
         if message.type not in ("note_on", "note_off"):
@@ -231,14 +231,13 @@ def notes_of(score: Score) -> list[ScoreNote]:
             ends[held.pop(key)] = number
         if message.type == "note_on" and message.velocity > 0:
             held[key] = number
+            ends[number] = -1
     found = []
-    for number, event in enumerate(score.events):
-        message = event.message
-        if message.type == "note_on" and message.velocity > 0:
-            end = ends.get(number, -1)
-            end_s = score.events[end].time_s if end >= 0 else score.duration_s
-            at = (message.channel, message.note, message.velocity)
-            found.append(ScoreNote(number, end, *at, event.time_s, end_s, event.beat))
+    for number, end in ends.items():
+        event, message = score.events[number], score.events[number].message
+        end_s = score.events[end].time_s if end >= 0 else score.duration_s
+        at = (message.channel, message.note, message.velocity)
+        found.append(ScoreNote(number, end, *at, event.time_s, end_s, event.beat))
     return found
 
 

@@ -62,10 +62,9 @@ def parse_jianpu(data: bytes) -> Written:
         reader.read(movement)
     written = reader.written()
     lines = [guess] if guess else []
-    lines += [notice if count == 1 else f"{notice} ({count})" for notice, count in notices.items()]
+    lines += [notated.times(notice, count) for notice, count in notices.items()]
     named = dict(unknown.most_common(MOST_UNKNOWN))
-    others = unknown.total() - sum(named.values())
-    if others:
+    if others := unknown.total() - sum(named.values()):
         named["other words"] = others
     return replace(written, unknown=named, warnings=tuple(lines))
 

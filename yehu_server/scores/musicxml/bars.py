@@ -174,9 +174,10 @@ class BarReader:
             self._bar.length = max(self._bar.length, self._at)
             self._head = note
         is_rest = element.find("rest") is not None
-        silent = "" if is_rest else _why_not_played(element)
-        if silent:
-            self._warnings[silent] += 1
+        is_cue = element.find("cue") is not None
+        if not is_rest and (is_cue or element.get("print-spacing") == "no"):  # as MuseScore has it
+            what = "cue notes" if is_cue else "hidden notes without a place on the page"
+            self._warnings[f"{what} are not played"] += 1
             return
         if is_rest:
             if element.find("notations/fermata") is not None:
@@ -265,15 +266,6 @@ class BarReader:
                     dynamics, note.at
                 )
         note.marks = marks.marks
-
-
-def _why_not_played(element: Element) -> str:
-    """Why a note is not played, as MuseScore has it for hidden ones; empty where it is."""
-    if element.find("cue") is not None:
-        return "cue notes are not played"
-    if element.get("print-spacing") == "no":
-        return "hidden notes without a place on the page are not played"
-    return ""
 
 
 def _divisions(element: Element) -> Fraction | None:

@@ -50,7 +50,8 @@ def read_musicxml(path: str | os.PathLike[str]) -> Written:
     MusicXML or is beyond all bounds.
     """
     with naming(path):
-        return written_of(read_root(path))
+        data = read_score_bytes(path, MOST_XML_BYTES)
+        return written_of(parse(unpacked(data) if data.startswith(ZIP) else data))
 
 
 def written_of(root: Element) -> Written:
@@ -64,13 +65,18 @@ def written_of(root: Element) -> Written:
     elements = root.findall("part")
     if len(elements) > MOST_PARTS:
         raise ScoreError(f"has more than {MOST_PARTS} parts")
-    names = _names(root)
+    names = {
+        part.get("id", ""): printable(part.findtext("part-name") or "")
+        for part in root.iterfind("part-list/score-part")
+    }
+    titles = (root.findtext(path) or "" for path in ("work/work-title", "movement-title"))
+    title = next(filter(None, map(printable, titles)), "")
     parts = []
     for element in elements:
         reader = BarReader(element, unknown, warnings)
         bars = [reader.read(measure) for measure in element.iterfind("measure")]
         parts.append((names.get(element.get("id", ""), ""), bars))
-    return assembled(parts, _title(root), unknown, warnings)
+    return assembled(parts, title, unknown, warnings)
 
 
 def _partwise(root: Element) -> Element:
@@ -85,27 +91,6 @@ def _partwise(root: Element) -> Element:
                 parts[name] = SubElement(changed, "part", {"id": name})
             SubElement(parts[name], "measure", dict(measure.attrib)).extend(part)
     return changed
-
-
-def _names(root: Element) -> dict[str, str]:
-    return {
-        part.get("id", ""): printable(part.findtext("part-name") or "")
-        for part in root.iterfind("part-list/score-part")
-    }
-
-
-def _title(root: Element) -> str:
-    for path in ("work/work-title", "movement-title"):
-        title = (root.findtext(path) or "").strip()
-        if title:
-            return printable(title)
-    return ""
-
-
-def read_root(path: str | os.PathLike[str]) -> ET.Element:
-    """Read the root element of a file. Raises ScoreError, one line, without the file's name."""
-    data = read_score_bytes(path, MOST_XML_BYTES)
-    return parse(unpacked(data) if data.startswith(ZIP) else data)
 
 
 def unpacked(data: bytes) -> bytes:

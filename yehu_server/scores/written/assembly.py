@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from itertools import groupby
 from typing import TypeVar
 
 from yehu_server.errors import ScoreError
@@ -69,20 +70,12 @@ def assembled(
 
 def _left_out_line(missing: Sequence[int], bars: Sequence[RawBar]) -> str:
     """A line that names bars by their numbers."""
-    runs: list[list[int]] = []
-    for at in missing:
-        if runs and runs[-1][-1] + 1 == at:
-            runs[-1].append(at)
-        else:
-            runs.append([at])
-    names = [
-        bars[run[0]].number if len(run) == 1 else f"{bars[run[0]].number} to {bars[run[-1]].number}"
-        for run in runs[:MOST_LEFT_OUT]
-    ]
-    more = "" if len(runs) <= MOST_LEFT_OUT else " and others"
+    together = groupby(enumerate(missing), key=lambda each: each[1] - each[0])
+    runs = ([bars[at].number for _, at in run] for _, run in together)
+    names = [run[0] if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in runs]
     plural = "bar is" if len(missing) == 1 else "bars are"
-    named = ", ".join(names)
-    return f"{len(missing)} {plural} not played, which repeats or jumps pass over: {named}{more}"
+    named = notated.listed(names, MOST_LEFT_OUT)
+    return f"{len(missing)} {plural} not played, which repeats or jumps pass over: {named}"
 
 
 def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Iterable[KeySignature]:

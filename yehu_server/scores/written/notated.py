@@ -8,7 +8,7 @@ notes since the beginning, exact, with all repeats unfolded. Pitches are MIDI no
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -120,6 +120,12 @@ SIGNS: Mapping[str, str] = {
 def times(text: str, count: int) -> str:
     """A warning, and the number of its occurrences."""
     return f"{text} ({count} times)" if count > 1 else text
+
+
+def listed(names: Sequence[str], most: int) -> str:
+    """Names for a line: the first of them, and the number of others."""
+    more = [f"{len(names) - most} others"] if len(names) > most else []
+    return ", ".join([*names[:most], *more])
 
 
 @dataclass(frozen=True)
@@ -260,9 +266,7 @@ class Written:
     def not_understood(self) -> list[str]:
         """A line with all marks that were not understood; none where all were."""
         named = [times(mark, count) for mark, count in self.unknown.items()]
-        if len(named) > MOST_NAMED:
-            named[MOST_NAMED:] = [f"and {len(named) - MOST_NAMED} others"]
-        return [f"not understood: {', '.join(named)}"] if named else []
+        return [f"not understood: {listed(named, MOST_NAMED)}"] if named else []
 
     @property
     def names(self) -> tuple[str, ...]:

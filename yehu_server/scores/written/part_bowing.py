@@ -134,10 +134,6 @@ def _slid_to(one: Played, other: Played, slide: str) -> Played:
     return replace(other, begin_s=other.begin_s - slide_s, slide_s=slide_s)
 
 
-def _farther(one: Span, other: Span) -> Span:
-    return other if other.end >= one.end else one
-
-
 class _Over:
     """Spans of one kind, found by the notes under them."""
 
@@ -145,7 +141,7 @@ class _Over:
         own = sorted((span for span in spans if span.name == name), key=lambda span: span.begin)
         self._begins = [span.begin for span in own]
         # The span that reaches farthest, of those up to each: enough to answer for any note.
-        self._farthest = list(accumulate(own, _farther))
+        self._farthest = list(accumulate(own, lambda a, b: b if b.end >= a.end else a))
 
     def joins(self, one: Note, other: Note) -> bool:
         """Whether a span is over both of two notes that follow each other."""

@@ -12,8 +12,7 @@ from functools import lru_cache
 import mido
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.smf.tunings import MOST as MOST_TUNINGS
-from yehu_server.scores.smf.tunings import is_tuning
+from yehu_server.scores.smf.tunings import MAX_MESSAGES, is_tuning
 
 MOST_KINDS = 30  # listed separately; a hostile file could have one for each of its bytes
 OTHERS = "further faults of other kinds"
@@ -221,7 +220,7 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
                 _keep(track, tick, kind, body, at, faults)
             elif status in (SYSEX, ESCAPE):
                 body = cursor.take(cursor.number(faults))
-                if status == SYSEX and is_tuning(body) and len(track.tunings) < MOST_TUNINGS:
+                if status == SYSEX and is_tuning(body) and len(track.tunings) < MAX_MESSAGES:
                     track.tunings.append((tick, body))
             elif status > SYSEX:
                 faults.add("a system message, which no file should hold, skipped", at)

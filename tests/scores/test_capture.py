@@ -533,7 +533,7 @@ def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
 def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
     commands = [(frame, RAMP, SPEED, 0.1, 0.0) for frame in range(10)]
     assert read_capture(write(tmp_path / "c", commands)).commands.tolist() == commands
-    monkeypatch.setattr("yehu_server.scores.capture.MOST_COMMANDS", 8)
+    monkeypatch.setattr("yehu_server.scores.capture.MAX_COMMANDS", 8)
     with pytest.raises(ScoreError, match="more than 8 events"):
         read_capture(tmp_path / "c")
 

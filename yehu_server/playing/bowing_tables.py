@@ -25,7 +25,7 @@ Array = Any
 SHIPPED = Path(__file__).parent / "practices.json"
 ENDING = ".practice.json"
 FORMAT, VERSION = "yehu-server practice", 2
-MOST_BYTES = 1 << 20
+MAX_BYTES = 1 << 20
 # Bounds of top speed (m/s), three shares of Schelleng's limit, distance, finger force (N).
 LOWEST = (0.02, 0.0, 0.0, 0.0, 0.2, 0.0)
 HIGHEST = (2.0, 12.0, 12.0, 12.0, 5.0, 10.0)
@@ -95,7 +95,7 @@ def _bowing_of(note: str, values: Any) -> Array:
 def read_bowing_table(path: Path) -> Array:
     """Read a practice file; raises ScoreError if not readable, ParameterError if it is none."""
     try:
-        return table_of(parse_json(read_text(path, MOST_BYTES)))
+        return table_of(parse_json(read_text(path, MAX_BYTES)))
     except OSError as error:
         raise ScoreError(f"{path}: {error.strerror}") from error
     except ParameterError as error:

@@ -24,7 +24,7 @@ from yehu_server.playing.sources import CHANNELS
 from yehu_server.util.documents import MOST_ERRORS, Document, Fields
 from yehu_server.util.values import brief, choice, flag, line, number, whole
 
-MOST_BYTES = 1 << 17  # one that is watched is parsed beside the playing
+MAX_BYTES = 1 << 17  # one that is watched is parsed beside the playing
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def document_of(path: Path, text: str = "") -> Document:
 
 def text_of(path: Path) -> str:
     """The text of a file; raises MappingError where it cannot be read or is not UTF-8."""
-    return document_of(path).read(path, MOST_BYTES).text
+    return document_of(path).read(path, MAX_BYTES).text
 
 
 def read_mapping_file(path: Path, text: str | None = None) -> MappingFile:
@@ -85,7 +85,7 @@ def _without_null(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 LONGEST_SMOOTHING_MS = 5000.0
-MOST_POINTS = 1024
+MAX_POINTS = 1024
 
 
 def settable_param(address: str, instead: str) -> Param:
@@ -136,8 +136,8 @@ def _breakpoints(value: list[Any]) -> Breakpoints:
         raise ParameterError("the points have to begin at 0 and end at 1")
     if any(later <= position for position, later in itertools.pairwise(positions)):
         raise ParameterError("each point has to lie beyond the one before it")
-    if len(points) > MOST_POINTS:
-        raise ParameterError(f"{len(points)} points are more than {MOST_POINTS}")
+    if len(points) > MAX_POINTS:
+        raise ParameterError(f"{len(points)} points are more than {MAX_POINTS}")
     return Breakpoints(points)
 
 

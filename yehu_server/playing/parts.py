@@ -38,7 +38,7 @@ DENSITY, STIFFNESS, LOSS = 0.02, 0.05, 0.1
 ROSIN = 0.03
 TUNED_CENTS = 1.5  # how well a player tunes
 
-MOST_HAIRS = SEEDS = 1 << 16
+MAX_HAIRS = SEEDS = 1 << 16
 WIDEST = 0.7  # pan of the outermost players; by ear: the room stays around them
 
 
@@ -110,7 +110,7 @@ def vary(
         quantities.bow,
         mu_C=quantities.bow.mu_C * rosin,
         mu_S=quantities.bow.mu_S * rosin,
-        hair=float(by_chance.integers(MOST_HAIRS)),
+        hair=float(by_chance.integers(MAX_HAIRS)),
     )
     body = _vary_body(quantities.body, factor)
     own = replace(quantities, string_1=strings[0], string_2=strings[1], bow=bow, body=body)

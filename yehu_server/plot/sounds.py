@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Array = Any
 
-LEAST_PRESSURE = 1e-9  # Pa; silence is not scaled up
+MIN_PRESSURE = 1e-9  # Pa; silence is not scaled up
 
 
 def spectrogram(
@@ -170,7 +170,7 @@ def plot_data_of(
     """Gather what pictures show of a sound; see `sound_of`."""
     samples, rate = sound_of(sound, sample_rate)
     if is_pressure(sound):
-        samples = samples / max(float(np.abs(samples).max(initial=0.0)), LEAST_PRESSURE)
+        samples = samples / max(float(np.abs(samples).max(initial=0.0)), MIN_PRESSURE)
     a4 = float(getattr(sound, "a4", 440.0) if a4 is None else a4)
     data = PlotData(rate, len(samples) / rate, 1, a4, step_s)
     times, pitches = getattr(sound, "asked", (np.zeros(0), np.zeros(0)))

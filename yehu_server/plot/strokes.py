@@ -30,7 +30,7 @@ from yehu_server.scores.written.performed import performed
 from yehu_server.scores.written.tempo import WrittenClock
 
 BLOCK = 64  # frames between two readings of the bow
-MOST_TURNS = 2  # of a note that are counted: more are a tremolo
+MAX_TURNS = 2  # of a note that are counted: more are a tremolo
 SOONER_S = 1e-6
 
 
@@ -106,4 +106,4 @@ def _directions(part: Part, rate: int, played: Sequence[Played]) -> Iterator[lis
             first.process(samples)
             bows.append(float(rig["player"]["direction"]))
         own = [direction for direction, _ in groupby(bows[begin:end])]
-        yield own if len(own) <= 1 + MOST_TURNS else own[:1]
+        yield own if len(own) <= 1 + MAX_TURNS else own[:1]

@@ -24,7 +24,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 QUIET = 1e-4  # 80 dB below full scale
 QUIET_S = 0.2  # the tail ends after this time of quiet
 LONGEST_TAIL_S = 5.0
-LEAST_AHEAD = 2048  # frames of a block for which another thread costs less than it saves
+MIN_AHEAD = 2048  # frames of a block for which another thread costs less than it saves
 
 
 class PartPlayer:
@@ -144,7 +144,7 @@ class Performance:
 
     def _blocks(self) -> Iterator[Samples]:
         options = self._options
-        is_ahead = options.cores > 1 and options.block >= LEAST_AHEAD
+        is_ahead = options.cores > 1 and options.block >= MIN_AHEAD
         own = min(options.cores, len(self.ensemble.instruments))
         is_in_turn = own == 1 and not is_ahead and not self._has_stems
         with shared(own) as share:

@@ -15,7 +15,7 @@ from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
 from yehu_server.scores.written.notated import Written, listed
 
-MOST_NAMED = 8  # parts in a line
+MAX_NAMED = 8  # parts in a line
 ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
 
 
@@ -34,11 +34,11 @@ def numbers_of(names: Sequence[str], asked: Sequence[str]) -> list[int]:
             same = [int(word[:6]) - 1]
         chosen = same or begun
         if not chosen:
-            more = did_you_mean(text, names) or f"; it has {listed(names, MOST_NAMED)}"
+            more = did_you_mean(text, names) or f"; it has {listed(names, MAX_NAMED)}"
             raise ScoreError(f"has no part {text}{more}")
         if len(chosen) > 1:
             raise ScoreError(
-                f"part {text} may be {listed([names[at] for at in chosen], MOST_NAMED)}"
+                f"part {text} may be {listed([names[at] for at in chosen], MAX_NAMED)}"
             )
         found.add(chosen[0])
     return sorted(found)
@@ -68,7 +68,7 @@ def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
     if tune is None or take_turns(parts):
         return score
     others = [name for at, name in enumerate(names) if at != tune]
-    line = f"plays {names[tune]}; also there: {listed(others, MOST_NAMED)} ({ONE_BY_ONE})"
+    line = f"plays {names[tune]}; also there: {listed(others, MAX_NAMED)} ({ONE_BY_ONE})"
     return replace(_only(score, [score.parts[tune]]), remarks=(*score.remarks, line))
 
 
@@ -78,8 +78,8 @@ def others_line(written: Written, plays: Sequence[int]) -> str:
     others = [names[at] for at, part in enumerate(written.parts) if part.notes and at not in plays]
     if not others:
         return ""
-    played = listed([names[at] for at in plays], MOST_NAMED)
-    return f"plays {played}; also there: {listed(others, MOST_NAMED)} ({ONE_BY_ONE})"
+    played = listed([names[at] for at in plays], MAX_NAMED)
+    return f"plays {played}; also there: {listed(others, MAX_NAMED)} ({ONE_BY_ONE})"
 
 
 def parts_chosen(score: Score, asked: Sequence[str]) -> Score:

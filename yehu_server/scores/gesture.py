@@ -22,7 +22,7 @@ Curve = tuple[tuple[float, float], ...]
 
 HIGHEST_RATE = 1e6  # Hz, of the model alone, to see how it converges; players end at 192 kHz
 MAX_DURATION_S = 3600.0
-MOST_BYTES = 16 * 2**20
+MAX_BYTES = 16 * 2**20
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def read_gesture(path: Path, instrument: Path | None = None) -> Gesture:
     Raises ScoreError where it cannot be read or is not JSON; ParameterError where an entry is
     wrong.
     """
-    document = Document(path, "a gesture file", unreadable=ScoreError).read(path, MOST_BYTES)
+    document = Document(path, "a gesture file", unreadable=ScoreError).read(path, MAX_BYTES)
     table = document.json()
     return gesture_from(Fields(on_instrument(table.data, instrument), document), path.parent)
 

@@ -20,7 +20,7 @@ from yehu_server.util.files import read_bytes, why
 
 MAX_DURATION_H = 2.0  # of all that is played, where no other is asked for
 LONGEST_DURATION_H = 1000.0  # that may be asked for
-MOST_SHOWN = 40  # characters of words of a score
+MAX_SHOWN = 40  # characters of words of a score
 
 
 def check_duration(seconds: float, max_duration_h: float, what: str = "the score lasts") -> None:
@@ -44,7 +44,7 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
 def printable(text: str) -> str:
     """Words of a score for a message: short, and of one line."""
     line = one_line(text.strip())
-    return line if len(line) <= MOST_SHOWN else f"{line[:MOST_SHOWN]}..."
+    return line if len(line) <= MAX_SHOWN else f"{line[:MAX_SHOWN]}..."
 
 
 def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:

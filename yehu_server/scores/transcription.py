@@ -212,8 +212,8 @@ def _written(
     begins = sorted({note.begin for _, heard in voices for note in heard})
     if not begins:
         raise ScoreError("has no note to write")
-    if max(note.end for _, heard in voices for note in heard) > notated.MOST_BEATS:
-        raise ScoreError(f"is longer than {notated.MOST_BEATS} quarters")
+    if max(note.end for _, heard in voices for note in heard) > notated.MAX_BEATS:
+        raise ScoreError(f"is longer than {notated.MAX_BEATS} quarters")
     grid = _Grid(begins)
     parts = []
     chords = 0

@@ -16,9 +16,9 @@ from yehu_server.scores.written.words import Meaning
 UNFIT = "bar lines do not fit the metre"
 FINE, SEGNO, TO_CODA, DA_CAPO, DAL_SEGNO = JUMPS = ("Fine", "Segno", "ToCoda", "DC", "DS")
 BACK, ENDS = (DA_CAPO, DAL_SEGNO), (FINE, TO_CODA)
-MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
-MOST_DEPTH = 8  # repeats within repeats
-MOST_TIMES = 100
+MAX_UNFOLDED = 50_000  # notes, rests and dashes of a part
+MAX_DEPTH = 8  # repeats within repeats
+MAX_TIMES = 100
 
 
 class Bars:
@@ -136,15 +136,15 @@ class RepeatStack:
 
     def open_repeat(self, times: str, word: Word, *, signs: bool = False) -> None:
         """Begin a repeat. Raises ScoreError beyond its bounds."""
-        if len(times) > 4 or int(times) > MOST_TIMES:
-            raise failure(word, f"more than {MOST_TIMES} times")
+        if len(times) > 4 or int(times) > MAX_TIMES:
+            raise failure(word, f"more than {MAX_TIMES} times")
         repeat = Repeat(int(times))
         self._open(_Open(repeat.body, word, repeat, self._bars.place, signs=signs))
         self._stack[-2].elements.append(repeat)
 
     def _open(self, opened: _Open) -> None:
-        if len(self._stack) > MOST_DEPTH:
-            raise failure(opened.word, f"more than {MOST_DEPTH} repeats within each other")
+        if len(self._stack) > MAX_DEPTH:
+            raise failure(opened.word, f"more than {MAX_DEPTH} repeats within each other")
         self._stack.append(opened)
 
     def open_endings(self, word: Word) -> None:
@@ -162,8 +162,8 @@ class RepeatStack:
         if not opened.endings:
             self._bars.line(word)
             return
-        if len(opened.repeat.endings) == MOST_TIMES:
-            raise failure(word, f"more than {MOST_TIMES} endings")
+        if len(opened.repeat.endings) == MAX_TIMES:
+            raise failure(word, f"more than {MAX_TIMES} endings")
         opened.elements = []
         opened.repeat.endings.append(opened.elements)
         self._bars.return_to(opened.begin)
@@ -211,7 +211,7 @@ def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
     """Elements in the order of playing, and warnings.
 
     After a da capo or dal segno, repeats are not taken again, and of endings the last is played.
-    Only the first of several is taken. Raises ScoreError where there are more than MOST_UNFOLDED.
+    Only the first of several is taken. Raises ScoreError where there are more than MAX_UNFOLDED.
     """
     once = _flat(written, repeated=True)
     back = next((at for at, each in enumerate(once) if each in BACK), None)
@@ -262,5 +262,5 @@ def _flat(written: Sequence[object], *, repeated: bool) -> list[object]:
 
 
 def _check(notes: float) -> None:
-    if notes > MOST_UNFOLDED:
-        raise ScoreError(f"with its repeats, has more than {MOST_UNFOLDED} notes")
+    if notes > MAX_UNFOLDED:
+        raise ScoreError(f"with its repeats, has more than {MAX_UNFOLDED} notes")

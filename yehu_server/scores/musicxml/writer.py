@@ -24,7 +24,7 @@ HEAD = (
     b'"-//Recordare//DTD MusicXML 4.0 Partwise//EN" '
     b'"http://www.musicxml.org/dtds/partwise.dtd">\n'
 )
-MOST_DIVISIONS, DEFAULT_DIVISIONS = 16_383, 5040  # of a quarter note
+MAX_DIVISIONS, DEFAULT_DIVISIONS = 16_383, 5040  # of a quarter note
 DOTTED = {Fraction(1): 0, Fraction(3, 2): 1, Fraction(7, 4): 2}
 # Lengths that one sign has, the longest first, with its name and its dots.
 SIGNED = sorted(
@@ -33,14 +33,14 @@ SIGNED = sorted(
 )  # fmt: skip
 SIGNS_OF = dict(SIGNED)
 LINES = {"slur": "slur", "glissando": "glissando", "portamento": "slide", "trill": "wavy-line"}
-MOST_LINES = 16  # of a kind, open at once
+MAX_LINES = 16  # of a kind, open at once
 
 
 def musicxml_of(written: Written) -> tuple[bytes, dict[str, int]]:
     """Return a score as MusicXML, and what that cannot say: names, with counts."""
     lost: Counter[str] = Counter()
     divisions = math.lcm(*_denominators(written))
-    if divisions > MOST_DIVISIONS:
+    if divisions > MAX_DIVISIONS:
         divisions = DEFAULT_DIVISIONS
         written, moved = layout.rounded(written, [divisions])
         lost["beats finer than 1/5040 of a quarter"] += moved
@@ -224,7 +224,7 @@ class _PartWriter:
 
     def _line(self, kind: str, span: Span, *, is_end: bool) -> str | None:
         """Begin or end a line; return the number that it has among those open, if there is room."""
-        open_ = self._lines.setdefault(kind, [None] * MOST_LINES)
+        open_ = self._lines.setdefault(kind, [None] * MAX_LINES)
         sought = span if is_end else None
         at = next((at for at, each in enumerate(open_) if each is sought), None)
         if at is None:

@@ -14,7 +14,7 @@ import mido
 from yehu_server.errors import ScoreError
 from yehu_server.scores.smf.tunings import MAX_MESSAGES, is_tuning
 
-MOST_KINDS = 30  # listed separately; a hostile file could have one for each of its bytes
+MAX_KINDS = 30  # listed separately; a hostile file could have one for each of its bytes
 OTHERS = "further faults of other kinds"
 
 
@@ -30,7 +30,7 @@ class DamageReport:
 
     def add(self, what: str, at: int) -> None:
         """Note a fault at a byte of the file, counted from 0."""
-        if what not in self._found and len(self._found) >= MOST_KINDS:
+        if what not in self._found and len(self._found) >= MAX_KINDS:
             what = OTHERS
         times, first = self._found.get(what, (0, at))
         self._found[what] = (times + 1, min(first, at))
@@ -60,7 +60,7 @@ FILM_FRAMES = (24, 25, 29, 30)
 SMPTE = 0x8000
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
 TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE, KEY_SIGNATURE = 0x03, 0x2F, 0x51, 0x58, 0x59
-MOST_SHARPS = 7  # or flats, of a key signature
+MAX_SHARPS = 7  # or flats, of a key signature
 LONGEST_NAME = 40  # characters
 STATUS = re.compile(rb"[\x80-\xff]")
 SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
@@ -261,7 +261,7 @@ def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: Dama
             faults.add("an impossible time signature ignored", at)
     elif kind == KEY_SIGNATURE:
         sharps = int.from_bytes(body[:1], "big", signed=True)
-        if body and abs(sharps) <= MOST_SHARPS:
+        if body and abs(sharps) <= MAX_SHARPS:
             track.keys.append((tick, sharps))
         else:
             faults.add("an impossible key signature ignored", at)

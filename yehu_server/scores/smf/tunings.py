@@ -19,7 +19,7 @@ UNIVERSAL = (0x7E, 0x7F)  # not in real time, in real time
 DEVICE_CONTROL, TUNING = 4, 8
 MASTER_FINE, MASTER_COARSE = 3, 4
 SCALE_1, SCALE_2 = 8, 9  # bytes for each note of the scale
-MOST_BYTES, MAX_MESSAGES = 512, 1000  # of a message; messages of a track
+MAX_BYTES, MAX_MESSAGES = 512, 1000  # of a message; messages of a track
 FINE_CENTRE = 8192
 SINGLE_KEYS = "tuning of single keys by system exclusive is not supported"
 BENDS_TOO = "tuning by system exclusive is rounded to semitones on channels with pitch bends"
@@ -27,7 +27,7 @@ BENDS_TOO = "tuning by system exclusive is rounded to semitones on channels with
 
 def is_tuning(body: bytes) -> bool:
     """Whether the bytes after F0 are a tuning."""
-    if len(body) < 5 or len(body) > MOST_BYTES or body[0] not in UNIVERSAL:
+    if len(body) < 5 or len(body) > MAX_BYTES or body[0] not in UNIVERSAL:
         return False
     return body[2] == TUNING or (
         body[2] == DEVICE_CONTROL and body[3] in (MASTER_FINE, MASTER_COARSE)

@@ -29,7 +29,7 @@ FIFTHS = (0, 2, 4, -1, 1, 3, 5)  # the letters on the line of fifths
 CENTRE = 2  # of a key's seven notes on that line, from its do
 TUPLETS = {3: 2, 5: 4, 7: 4}  # so many notes in the time of so many
 FINEST = 16  # of a quarter: the shortest note that is drawn
-MOST_PAGE_BARS = 20_000
+MAX_PAGE_BARS = 20_000
 METRE_UNITS = (4, 8, 16, 32)
 
 
@@ -102,7 +102,7 @@ def _begins(written: Written) -> list[tuple[Fraction, str]]:
     found: list[tuple[Fraction, str]] = []
     for at, change in enumerate(changes):
         beat, end = change, min(last, changes[at + 1]) if at + 1 < len(changes) else last
-        while beat < end and len(found) < MOST_PAGE_BARS:
+        while beat < end and len(found) < MAX_PAGE_BARS:
             found.append((beat, str(len(found) + 1)))
             beat += metres[change]
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import accumulate, pairwise
+from itertools import pairwise
 
 from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.written.mark_settings import DOWN, UP, Active, is_plucked
@@ -141,7 +141,10 @@ class _Over:
         own = sorted((span for span in spans if span.name == name), key=lambda span: span.begin)
         self._begins = [span.begin for span in own]
         # The span that reaches farthest, of those up to each: enough to answer for any note.
-        self._farthest = list(accumulate(own, lambda a, b: b if b.end >= a.end else a))
+        self._farthest: list[Span] = []
+        for span in own:
+            last = self._farthest[-1:] or [span]
+            self._farthest.append(max(span, *last, key=lambda each: each.end))
 
     def joins(self, one: Note, other: Note) -> bool:
         """Whether a span is over both of two notes that follow each other."""

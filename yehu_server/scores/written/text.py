@@ -17,7 +17,7 @@ from yehu_server.scores.written.in_range import default_parts, moved_part
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Written
 
 ARTICULATED = {float(number): row.name for number, row in enumerate(ARTICULATIONS)}
-MOST_TEMPI = 20  # that the head shows
+MAX_TEMPI = 20  # that the head shows
 
 
 def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
@@ -30,10 +30,10 @@ def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
     for key in written.keys:
         yield f"bar {written.place(key.beat)[0]}: 1={key.do}"
     tempi = _changes((each.beat, each.quarters_per_minute) for each in written.tempi)
-    for beat, quarters in tempi[:MOST_TEMPI]:
+    for beat, quarters in tempi[:MAX_TEMPI]:
         yield f"bar {written.place(beat)[0]}: {quarters:g} quarters a minute"
-    if len(tempi) > MOST_TEMPI:
-        yield f"and {len(tempi) - MOST_TEMPI} more changes of tempo"
+    if len(tempi) > MAX_TEMPI:
+        yield f"and {len(tempi) - MAX_TEMPI} more changes of tempo"
     for beat, quarters in _changes((Fraction(each.beat), each.quarters) for each in written.metres):
         bar = written.place(beat)[0]
         yield f"bar {bar}: {quarters:g} quarter{'' if quarters == 1.0 else 's'} in a bar"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -57,17 +58,8 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
     Raises ScoreError, one line with the name: where it cannot be read, is no sound, or lasts too
     long.
     """
-    import soundfile
-
-    try:
-        with open_regular(path) as data, soundfile.SoundFile(data) as file:
-            rate, frames, channels = file.samplerate, file.frames, file.channels
-    except OSError as error:
-        raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
-    except ValueError as error:  # a NUL in the name
-        raise ScoreError("cannot be read (no such file name)") from error
-    except soundfile.LibsndfileError as error:
-        raise ScoreError(f"{path}: not a sound file ({error.error_string})") from error
+    with _opened(path) as file:
+        rate, frames, channels = file.samplerate, file.frames, file.channels
     if channels > MAX_CHANNELS:
         raise ScoreError(f"{path}: has {channels} channels, more than {MAX_CHANNELS}")
     _check_rate(str(path), rate)
@@ -76,17 +68,28 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
     size = round(BLOCK_S * rate)
 
     def blocks() -> Iterator[Array]:
-        try:
-            with open_regular(path) as data, soundfile.SoundFile(data) as file:
-                # Not its own blocks(), which needs the length of a sound: some files have none.
-                while len(block := file.read(size, dtype="float32", always_2d=True)):
-                    yield block
-        except OSError as error:
-            raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
-        except soundfile.LibsndfileError as error:
-            raise ScoreError(f"{path}: cannot be read ({error.error_string})") from error
+        with _opened(path) as file:
+            # Not its own blocks(), which needs the length of a sound: some files have none.
+            while len(block := file.read(size, dtype="float32", always_2d=True)):
+                yield block
 
     return Recording(str(path), rate, blocks)
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Open a sound file; raises ScoreError where it cannot be read."""
+    import soundfile
+
+    try:
+        with open_regular(path) as data, soundfile.SoundFile(data) as file:
+            yield file
+    except OSError as error:
+        raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
+    except ValueError as error:  # a NUL in the name
+        raise ScoreError("cannot be read (no such file name)") from error
+    except soundfile.LibsndfileError as error:
+        raise ScoreError(f"{path}: not a sound file ({error.error_string})") from error
 
 
 def recording_of_samples(samples: Array, rate: int, name: str = "the recording") -> Recording:

@@ -45,9 +45,7 @@ class Capture:
     version: int = VERSION
     commands: Any = field(default_factory=lambda: np.zeros(0, COMMAND))  # by frame
     players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # of each command, from 0
-    gaps: dict[int, int] = field(
-        default_factory=dict
-    )  # frame of each rest, and since when it was silent
+    gaps: dict[int, int] = field(default_factory=dict)  # frame of each rest: since when silent
     end: int | None = None  # number of frames
     lost: int = 0  # commands that were not captured
     warnings: list[str] = field(default_factory=list)

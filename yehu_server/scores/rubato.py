@@ -61,12 +61,8 @@ def delays_of(notes: Sequence[ScoreNote]) -> Delays:
             continue
         for step in range(POINTS + 1):
             to_end = 2.0 * step / POINTS - 1.0  # the integral of the square less a third
-            points.append(
-                (
-                    begin + length * step / POINTS,
-                    ARCH * length * to_end * (to_end * to_end - 1.0) / 6,
-                )
-            )
+            delay = ARCH * length * to_end * (to_end * to_end - 1.0) / 6
+            points.append((begin + length * step / POINTS, delay))
     return _with_end(notes, points)
 
 

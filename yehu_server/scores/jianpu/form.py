@@ -32,7 +32,7 @@ class Bars:
         self.length, self.place = Fraction(4), Fraction(0)
         self._notices = notices
         self._is_written = False
-        self._before_repeat = Fraction(0)
+        self.before_repeat = Fraction(0)  # the place where the last one's first time ended
         self._upbeat = Fraction(0)
         self._short: Word | None = None  # the end of a bar that an upbeat completes, if it is last
 
@@ -64,16 +64,8 @@ class Bars:
 
     def repeat(self, begin: Fraction, times: int) -> None:
         """Move to the place after a repeat, which began at a place."""
-        self._before_repeat = self.place
+        self.before_repeat = self.place
         self.place = (begin + times * (self.place - begin)) % self.length
-
-    def undo_repeat(self) -> None:
-        """Go back to the end of the last repeat's first time, where its endings begin."""
-        self.place = self._before_repeat
-
-    def return_to(self, place: Fraction) -> None:
-        """Go back to the place where the first ending began, for the next one."""
-        self.place = place
 
     def _warn(self, what: str, word: Word) -> None:
         first = next((text for text in self._notices if text.startswith(what)), None)
@@ -153,7 +145,7 @@ class RepeatStack:
         if not isinstance(before, Repeat) or before.endings:
             raise failure(word, "A{ belongs after the } of a repeat")
         before.endings.append([])
-        self._bars.undo_repeat()
+        self._bars.place = self._bars.before_repeat
         self._open(_Open(before.endings[0], word, before, self._bars.place, endings=True))
 
     def bar_line(self, word: Word) -> None:
@@ -166,7 +158,7 @@ class RepeatStack:
             raise failure(word, f"more than {MAX_TIMES} endings")
         opened.elements = []
         opened.repeat.endings.append(opened.elements)
-        self._bars.return_to(opened.begin)
+        self._bars.place = opened.begin
 
     def begin_by_sign(self, word: Word) -> None:
         """Begin a repeat at ``|:``; an open one of such a sign ends."""

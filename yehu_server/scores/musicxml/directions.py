@@ -10,7 +10,7 @@ from yehu_server.scores.musicxml.marks import VALUES, number
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
 from yehu_server.scores.written.voices import RawDirection
-from yehu_server.scores.written.words import Meaning, meaning_of
+from yehu_server.scores.written.words import meaning_of
 
 FORTE = 90.0  # the MIDI velocity of which <sound dynamics> is a percentage
 LONGEST_WORDS = 200
@@ -112,17 +112,12 @@ class DirectionReader:
         if not words:
             return
         meaning = meaning_of(words)
-        if meaning is not None:
-            self._mean(meaning, at, has_tempo=has_tempo, jumps=jumps)
-        elif not has_tempo:  # beside a figure, any words are the tempo's name
-            self._unknown[f'words "{printable(words)}"'] += 1
-
-    def _mean(self, meaning: Meaning, at: Fraction, *, has_tempo: bool, jumps: bool) -> None:
-        if meaning.kind == "jump":
-            if not jumps:
-                self._jumps.add(meaning.name)
-        elif meaning.kind == "tempo":
-            if not has_tempo:
-                self._add(at, "tempo", "words", meaning.value)
-        else:
+        if meaning is None:
+            if not has_tempo:  # beside a figure, any words are the tempo's name
+                self._unknown[f'words "{printable(words)}"'] += 1
+        elif meaning.kind == "jump":
+            self._jumps.update(() if jumps else (meaning.name,))
+        elif meaning.kind != "tempo":
             self._add(at, meaning.kind, meaning.name, meaning.value)
+        elif not has_tempo:
+            self._add(at, "tempo", "words", meaning.value)

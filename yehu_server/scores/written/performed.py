@@ -95,19 +95,10 @@ def leading_notes(written: Written, number: int) -> list[ScoreNote]:
 
     One under a fermata is as long as that has it.
     """
-    clock = WrittenClock(written)
+    at = WrittenClock(written).seconds
     return [
-        ScoreNote(
-            -1,
-            -1,
-            0,
-            _key_of(note.pitch),
-            0,
-            clock.seconds(note.beat),
-            clock.seconds(note.end),
-            float(note.beat),
-        )
-        for note in written.parts[number].notes
+        ScoreNote(-1, -1, 0, _key_of(n.pitch), 0, at(n.beat), at(n.end), float(n.beat))
+        for n in written.parts[number].notes
     ]
 
 

@@ -147,17 +147,6 @@ def _move(
     )
 
 
-def places(parts: int) -> list[tuple[tuple[str, float], ...]]:
-    """The start values of parameters, by address, that place each of some players.
-
-    They sit side by side from left to right, in the order of the parts; one alone in the middle.
-    """
-    if parts == 1:
-        return [()]
-    step = 2.0 * WIDEST / (parts - 1)
-    return [(("/room/pan", part * step - WIDEST),) for part in range(parts)]
-
-
 def number_of_instruments(per_part: Sequence[PlayingOptions]) -> int:
     """How many instruments some parts take; raises ParameterError where a stage has fewer."""
     count = sum(map(section_size, per_part))
@@ -167,9 +156,14 @@ def number_of_instruments(per_part: Sequence[PlayingOptions]) -> int:
 
 
 def seated(per_part: Sequence[PlayingOptions]) -> list[PlayingOptions]:
-    """Options with a default pan and seed for each part; values that they set themselves win."""
+    """Options with a default pan and seed for each part; values that they set themselves win.
+
+    They sit side by side from left to right, in the order of the parts; one alone in the middle.
+    """
     own, number = [], 0
-    for playing, place in zip(per_part, places(len(per_part)), strict=True):
+    step = 2.0 * WIDEST / max(len(per_part) - 1, 1)
+    for part, playing in enumerate(per_part):
+        place = (("/room/pan", part * step - WIDEST),) if len(per_part) > 1 else ()
         seed = (playing.seed + number) % SEEDS
         own.append(replace(playing, start=(*place, *playing.start), seed=seed))
         number += section_size(playing)

@@ -301,11 +301,7 @@ class Player(PartState):
         either is beyond MIDI's range.
         """
         key, other = Key.of(key), within_midi("velocity", velocity) / 127.0
-        with self._lock:
-            frame = self._at(frame)
-            self.instrument.post(
-                events.NOTE_ON, frame=frame, index=key.channel, value=key.note, other=other
-            )
+        self.post(events.NOTE_ON, frame, key.channel, key.note, other)
 
     def key_off(self, key: Key | float, *, frame: int | None = None) -> None:
         """Let a key go, which ends its note unless a pedal keeps it; see `key_on`."""

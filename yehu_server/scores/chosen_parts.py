@@ -9,7 +9,7 @@ from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_F
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
 from yehu_server.scores.octaves import NoteSpan, octaves_of
-from yehu_server.scores.score import REST_S, Score, ScorePart, notes_of
+from yehu_server.scores.score import REST_S, Score, ScoreNote, ScorePart, notes_of
 from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
@@ -61,7 +61,7 @@ def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
     names = [part.name for part in score.parts]
     parts: list[list[NoteSpan]] = [[] for _ in names]
     for note in notes_of(score):
-        at = number_of(score.parts, note.channel, score.events[note.begins].track)
+        at = index_of(score.parts, note.channel, score.events[note.begins].track)
         if at is not None:
             parts[at].append(NoteSpan(note.start_s, note.end_s, (float(note.key),)))
     tune = melodic_part(names, parts, within)
@@ -95,7 +95,7 @@ def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
         for event in score.events
         if event.message.type != "note_on"
         or event.message.velocity == 0
-        or number_of(kept, event.message.channel, event.track) is not None
+        or index_of(kept, event.message.channel, event.track) is not None
     )
     return replace(score, events=tuple(events), parts=tuple(kept))
 
@@ -106,41 +106,38 @@ def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Sc
     With `is_mpe` the notes of a part are on channels of their own, and all are one part. The range
     is that of `within`.
     """
-    notes = notes_of(score)
     transposed = transposed_keys(score)
-    by_part: dict[str, list[int]] = {}
-    for number, note in enumerate(notes):
-        track = score.events[note.begins].track
-        at = number_of(score.parts, note.channel, track)
+    by_part: dict[str, list[ScoreNote]] = {}
+    for note in notes_of(score):
+        at = index_of(score.parts, note.channel, score.events[note.begins].track)
         own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
-        by_part.setdefault("" if is_mpe else own_name, []).append(number)
+        by_part.setdefault("" if is_mpe else own_name, []).append(note)
     moves: dict[int, int] = {}  # of events, in semitones
     parts = []
-    for name, numbers in by_part.items():
-        own = [notes[number] for number in numbers]
+    for name, own in by_part.items():
         pitches = [note.key + transposed.get(note.begins, 0.0) for note in own]
         spans = [NoteSpan(n.start_s, n.end_s, (p,)) for n, p in zip(own, pitches, strict=True)]
         octaves = octaves_of(spans, REST_S, within)
         if octaves.summary:
             parts.append((name, octaves.summary))
         for note, by in zip(own, octaves.of_notes, strict=True):
-            if 0 <= note.key + 12 * by <= 127:
+            if by and 0 <= note.key + 12 * by <= 127:
                 moves[note.begins] = 12 * by
                 end = score.events[note.ends].message  # a note-off, or the key struck again
                 if note.ends >= 0 and (end.type == "note_off" or end.velocity == 0):
                     moves[note.ends] = 12 * by
-    if not any(moves.values()):
+    if not moves:
         return score
     events = list(score.events)
     for number, by in moves.items():
         message = events[number].message
         events[number] = replace(events[number], message=message.copy(note=message.note + by))
     line = line_of([("" if len(by_part) == 1 else name, how) for name, how in parts], within)
-    remarks = (*score.remarks, *filter(None, (line.replace(":  ", ": "),)))
+    remarks = (*score.remarks, *filter(None, (line,)))
     return replace(score, events=tuple(events), remarks=remarks)
 
 
-def number_of(parts: Sequence[ScorePart], channel: int, track: int) -> int | None:
+def index_of(parts: Sequence[ScorePart], channel: int, track: int) -> int | None:
     """The number, from 0, of the part that has what a channel plays in a track."""
     for at, part in enumerate(parts):
         if part.channel in (channel, None) and part.track in (track, None):

@@ -16,9 +16,10 @@ import time
 
 from yehu_lab.practising.bowing_search import BowingSearch
 from yehu_lab.practising.candidates import DEFAULT
+from yehu_lab.practising.practice_file import as_data, as_text
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import PLACES, default_bowing_table
-from yehu_server.playing.bowing_tables import SHIPPED, as_data, as_text, shipped_bowing_table
+from yehu_server.playing.bowing_tables import SHIPPED, shipped_bowing_table
 from yehu_server.playing.calibration import calibrate
 from yehu_server.playing.calibration_store import calibration_for
 

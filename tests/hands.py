@@ -11,8 +11,8 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, SPEEDS, Calibration
 from yehu_server.core.player.commands import apply
+from yehu_server.core.player.note_tables import OPEN_NOTES, PITCHES, SPEEDS, NoteTables
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.player.record import SILENT
@@ -36,10 +36,10 @@ DECIDED = (
 LOW_DB, HIGH_DB = 6.0 * 25.0 / 38.0, -6.0 * 13.0 / 38.0
 
 
-def ideal(a4: float = 440.0) -> Calibration:
+def ideal(a4: float = 440.0) -> NoteTables:
     """Fingers stop where an ideal string is in tune; from C5 up all is 6 dB louder."""
     strings = Quantities().strings
-    return Calibration(
+    return NoteTables(
         a4,
         (strings[0].T, strings[1].T),
         tuple(tuple((0.0,) * len(SPEEDS) for _ in pitches) for pitches in PITCHES),
@@ -188,20 +188,20 @@ class Watched(Instrument):
 class Checked(Player):
     """Commands to a `Watched`: what they tell must be what its player holds."""
 
-    _instrument: Watched
+    instrument: Watched
 
     @property
     def sounding(self) -> Key | None:
         told = super().sounding
-        assert told == self._instrument.sounding
+        assert told == self.instrument.sounding
         return told
 
     def held(self, channel: int | None = None) -> list[Key]:
-        assert super().held() == self._instrument.held
+        assert super().held() == self.instrument.held
         return super().held(channel)
 
     def value(self, address: str) -> float:
         told = super().value(address)
         if not find(address).player_controlled:
-            assert told == self._instrument.requested(address)
+            assert told == self.instrument.requested(address)
         return told

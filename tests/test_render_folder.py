@@ -20,9 +20,9 @@ from forks import in_the_place_of_workers, start
 from midi_files import midi_file, notes
 from waiting import LONG_S, until
 
+from yehu_lab.practising.practice_file import write_bowing_table
 from yehu_server.cli import main
 from yehu_server.core.player.bowing import default_bowing_table
-from yehu_server.playing.bowing_tables import write_bowing_table
 from yehu_server.util.sound_file import is_rendered
 
 # Where a whole command starts them, its workers are new Pythons.

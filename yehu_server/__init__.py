@@ -21,7 +21,6 @@ from yehu_server.util import __version__
 
 if TYPE_CHECKING:
     from yehu_server import plot
-    from yehu_server.api.compared import Comparison, compare
     from yehu_server.api.followed import Followed, follow
     from yehu_server.api.instrument import Instrument
     from yehu_server.api.notes import Note
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from yehu_server.api.rendered import Rendering, render
     from yehu_server.api.simulated import Simulation, simulate
     from yehu_server.errors import YehuError
-    from yehu_server.laboratory import Sweep, body, sweep
+    from yehu_server.laboratory import Comparison, Sweep, body, compare, sweep
 
 __all__ = [
     "AudioWidget",
@@ -54,7 +53,7 @@ __all__ = [
 
 _MODULES = {
     "AudioWidget": "api.playback",
-    "Comparison": "api.compared",
+    "Comparison": "laboratory",
     "Followed": "api.followed",
     "Instrument": "api.instrument",
     "Note": "api.notes",
@@ -64,7 +63,7 @@ _MODULES = {
     "Sweep": "laboratory",
     "YehuError": "errors",
     "body": "laboratory",
-    "compare": "api.compared",
+    "compare": "laboratory",
     "follow": "api.followed",
     "play": "api.playback",
     "plot": "plot",

@@ -14,7 +14,7 @@ import numpy as np
 from measures.intonation import FAIR_CENTS, NONE, off_by
 from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Take, in_parallel
-from yehu_server.core.player.calibration import OPEN_NOTES
+from yehu_server.core.player.note_tables import OPEN_NOTES
 
 BEGIN_S, LENGTH_S, LAG_S, WINDOW_S = 0.3, 1.0, 0.012, 0.03
 OPEN_WITHIN = 0.5  # semitones

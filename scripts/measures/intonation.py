@@ -15,7 +15,7 @@ import numpy as np
 
 from measures.shares import Share, share_line
 from measures.take import Sound
-from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz
+from yehu_server.core.player.note_tables import OPEN_NOTES, frequency_hz
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
 
 LISTEN_S = 0.06

@@ -9,7 +9,7 @@ from scipy.signal import fftconvolve
 
 from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, held, in_parallel
-from yehu_server.core.player.calibration import OPEN_NOTES, frequency_hz
+from yehu_server.core.player.note_tables import OPEN_NOTES, frequency_hz
 
 Array = Any
 

@@ -23,7 +23,7 @@ from scipy.signal import resample_poly
 
 from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Sound, Take, in_parallel
-from yehu_server.core.player.calibration import frequency_hz
+from yehu_server.core.player.note_tables import frequency_hz
 from yehu_server.following.frames import nsdf
 
 Array = Any

@@ -10,12 +10,12 @@ import numpy as np
 from measures.life import pitch_track
 from measures.section_take import SectionTake
 from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.player.calibration import OPEN_NOTES
+from yehu_server.core.player.note_tables import OPEN_NOTES
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key
+from yehu_server.playing.parts import section_specs
 from yehu_server.playing.pitch_and_level import a_weighted_db, cents, pitch_hz
-from yehu_server.playing.section_instruments import section_specs
 
 PLAYERS = 8
 NOTES = range(65, 90)  # F4 to F6

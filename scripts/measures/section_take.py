@@ -13,7 +13,7 @@ from yehu_server.core.player.commands import BEGIN
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key
-from yehu_server.playing.section_instruments import SECTION, section_specs
+from yehu_server.playing.parts import SECTION, section_specs
 from yehu_server.rendering.cores import Cores, shared
 
 BLOCK_S = 1.0

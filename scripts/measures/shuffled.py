@@ -16,7 +16,7 @@ import numpy as np
 from measures.intonation import overtones_off_by
 from measures.shares import Share, share_line
 from measures.take import NOTES, Setup, Sound, Take, in_parallel
-from yehu_server.core.player.calibration import frequency_hz
+from yehu_server.core.player.note_tables import frequency_hz
 from yehu_server.playing.pitch_and_level import a_weighted_db
 
 EACH_S, REST_S = 0.4, 0.02

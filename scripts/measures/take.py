@@ -15,7 +15,7 @@ import numpy as np
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import Calibration, wave_speed
+from yehu_server.core.player.note_tables import NoteTables, wave_speed
 from yehu_server.params.table import FINGERS, find
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, load
@@ -52,7 +52,7 @@ class Setup:
     phrasing: float = 0.0
 
     @property
-    def calibration(self) -> Calibration:
+    def calibration(self) -> NoteTables:
         """That of the instrument, bowed so."""
         return calibration_for(self.rate, self.own, bowing=self.bowing)
 

@@ -16,7 +16,7 @@ from measures.life import HOP_S, WINDOW_S, pitch_track
 
 import yehu_server as yehu
 from pictures.saving import ROOT, levels, save, save_sound
-from yehu_server.core.player.calibration import frequency_hz
+from yehu_server.core.player.note_tables import frequency_hz
 from yehu_server.scores.score import notes_of
 from yehu_server.scores.smf.reader import read_score
 

@@ -19,6 +19,7 @@ from yehu_lab.practising.bowing_search import (
 )
 from yehu_lab.practising.candidates import slower
 from yehu_lab.practising.passages import Passage, SearchedNote
+from yehu_lab.practising.practice_file import write_bowing_table
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
     AT_FIRM,
@@ -29,11 +30,7 @@ from yehu_server.core.player.bowing import (
 )
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.params.table import find
-from yehu_server.playing.bowing_tables import (
-    read_bowing_table,
-    shipped_bowing_table,
-    write_bowing_table,
-)
+from yehu_server.playing.bowing_tables import read_bowing_table, shipped_bowing_table
 from yehu_server.playing.calibration_store import calibration_for
 
 RATE = 44100.0

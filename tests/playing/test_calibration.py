@@ -14,14 +14,14 @@ from sound import run, run_for
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import (
+from yehu_server.core.player.intonation import balance_db, position_of
+from yehu_server.core.player.note_tables import (
     OPEN_NOTES,
     PITCHES,
     ROWS_OF_A_YEHU,
     SPEEDS,
-    Calibration,
+    NoteTables,
 )
-from yehu_server.core.player.intonation import balance_db, position_of
 from yehu_server.playing.calibration import _completed, calibration_key
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
@@ -55,7 +55,7 @@ def test_a_note_that_could_not_be_measured_is_between_its_neighbours_at_each_spe
 MEASURED = Quantities()
 
 
-def calibrated_player(calibration: Calibration, quantities: Quantities = MEASURED) -> np.void:
+def calibrated_player(calibration: NoteTables, quantities: Quantities = MEASURED) -> np.void:
     """The record of a player who knows a calibration."""
     instrument = Watched(quantities=quantities, calibration=calibration)
     return instrument._rig["player"][0]
@@ -76,7 +76,7 @@ def test_the_sharpening_is_read_at_its_notes_and_speeds():
         tuple(tuple(10.0 * pitch + column for column in range(4)) for pitch in pitches)
         for pitches in PITCHES
     )
-    player = calibrated_player(Calibration(440.0, (49.5, 64.1), tables))
+    player = calibrated_player(NoteTables(440.0, (49.5, 64.1), tables))
 
     def sharpening(string: int, pitch: float, speed: float) -> float:
         """How much lower (cents) than the pitch the finger stops an ideal string."""

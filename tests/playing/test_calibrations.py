@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import GAINS
+from yehu_server.core.player.note_tables import GAINS
 from yehu_server.errors import ParameterError
 from yehu_server.playing import calibration_store
-from yehu_server.playing.calibration import PITCHES, SPEEDS, Calibration
+from yehu_server.playing.calibration import PITCHES, SPEEDS, NoteTables
 from yehu_server.playing.calibration_store import calibration_for, read_calibration
 from yehu_server.util import checksummed
 from yehu_server.util.checksummed import write_checksummed
 
-MEASURED = Calibration(
+MEASURED = NoteTables(
     441.0,
     (50.0, 66.0),
     tuple(tuple((40.0,) * len(SPEEDS) for _ in pitches) for pitches in PITCHES),
@@ -34,11 +34,11 @@ class Kept:
         self.folder = folder
         self.measured = 0
 
-    def measure(self, *_, **__) -> Calibration:
+    def measure(self, *_, **__) -> NoteTables:
         self.measured += 1
         return MEASURED
 
-    def ask(self) -> Calibration:
+    def ask(self) -> NoteTables:
         return calibration_for(50000.0, a4=441.0)
 
     @property

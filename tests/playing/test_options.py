@@ -3,8 +3,8 @@
 import pytest
 from fiddles import SLACK_TOML
 
+from yehu_lab.practising.practice_file import write_bowing_table
 from yehu_server.core.player.bowing import default_bowing_table
-from yehu_server.playing.bowing_tables import write_bowing_table
 from yehu_server.playing.options import PlayingOptions
 
 

@@ -12,6 +12,7 @@ from commands import is_one_line
 from fiddles import SLACK_TOML
 from midi_files import midi_file, notes
 
+from yehu_lab.practising.practice_file import write_bowing_table
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -28,7 +29,6 @@ from yehu_server.playing.bowing_tables import (
     bowing_table_beside,
     read_bowing_table,
     shipped_bowing_table,
-    write_bowing_table,
 )
 
 RATE = 44100.0

@@ -25,8 +25,8 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import player_of
 from yehu_server.playing.player import Player
 from yehu_server.playing.preset_folders import (
-    MOST_NAMED,
-    MOST_OWN,
+    MAX_NAMED,
+    MAX_OWN,
     Presets,
 )
 
@@ -175,23 +175,23 @@ def test_a_link_within_the_folder_and_a_folder_that_is_a_link_are_followed_but_n
 
 
 def test_a_folder_holds_so_many_presets_and_of_more_the_first_are_listed(presets, put):
-    for number in range(MOST_OWN):
+    for number in range(MAX_OWN):
         put(f"mine {number:03}", HEAD)
-    with pytest.raises(PresetError, match=f"there are {MOST_OWN} presets of your own; delete one"):
+    with pytest.raises(PresetError, match=f"there are {MAX_OWN} presets of your own; delete one"):
         presets.save("one more", DEFAULTS)
     assert not (presets.own / "one more.toml").exists()
     presets.save("mine 007", DEFAULTS)  # an existing one
     presets.delete("mine 008")
     presets.save("mine 008", DEFAULTS)
-    for number in range(MOST_OWN, MOST_OWN + 3):
+    for number in range(MAX_OWN, MAX_OWN + 3):
         put(f"mine {number}", HEAD)
     found, errors = presets.all()
-    assert len(found) == MOST_OWN + len(SHIPPED)
-    assert [str(error) for error in errors] == [f"{presets.own}: 3 more than {MOST_OWN}, left out"]
-    assert presets.load(f"mine {MOST_OWN + 2}").name == f"mine {MOST_OWN + 2}"
+    assert len(found) == MAX_OWN + len(SHIPPED)
+    assert [str(error) for error in errors] == [f"{presets.own}: 3 more than {MAX_OWN}, left out"]
+    assert presets.load(f"mine {MAX_OWN + 2}").name == f"mine {MAX_OWN + 2}"
     with pytest.raises(PresetError) as refused:
         presets.load("x")
-    assert str(refused.value).endswith(f" and {MOST_OWN + len(SHIPPED) - MOST_NAMED} more)")
+    assert str(refused.value).endswith(f" and {MAX_OWN + len(SHIPPED) - MAX_NAMED} more)")
 
 
 def test_a_preset_of_ones_own_hides_a_shipped_one_until_it_is_deleted(presets, put):

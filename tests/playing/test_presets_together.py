@@ -3,7 +3,7 @@
 import pytest
 
 from yehu_server.errors import PresetError
-from yehu_server.playing.preset_folders import MOST_TOGETHER, Presets, is_name
+from yehu_server.playing.preset_folders import MAX_TOGETHER, Presets, is_name
 
 
 @pytest.fixture
@@ -40,6 +40,6 @@ def test_a_name_that_is_none_is_told_and_so_many_do_not_go_together(presets):
         with pytest.raises(PresetError):
             presets.find(wrong)
     with pytest.raises(PresetError, match="at most 8 go together"):
-        presets.load("+".join(["hall"] * (MOST_TOGETHER + 1)))
+        presets.load("+".join(["hall"] * (MAX_TOGETHER + 1)))
     assert is_name("sul-tasto+hall")
     assert not any(map(is_name, ("some+folder/preset.toml", "a+b.toml")))

@@ -25,8 +25,8 @@ from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key
+from yehu_server.playing.parts import section_specs
 from yehu_server.playing.player import Player
-from yehu_server.playing.section_instruments import section_specs
 from yehu_server.rendering.cores import Cores
 
 BEAT = 24000  # frames

@@ -12,8 +12,8 @@ import yehu_server as yehu
 from yehu_lab.practising.passages import SearchedNote, pitches_near_notes, stops_of
 from yehu_server import YehuError
 from yehu_server.core.physics.quantities import Quantities, override, read_quantities
-from yehu_server.core.player.calibration import PITCHES
 from yehu_server.core.player.note_range import YEHU, NoteRange
+from yehu_server.core.player.note_tables import PITCHES
 from yehu_server.errors import ParameterError
 from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_table
 from yehu_server.playing.calibration_store import calibration_for, read_calibration

@@ -217,7 +217,7 @@ def test_an_address_is_completed_or_refused():
 def test_a_file_that_is_no_schedulers_is_refused(tmp_path):
     for text in ("", "{}", "[]", '{"address": 5}', '{"address": "a b"}'):
         (tmp_path / "a.json").write_text(text)
-        with pytest.raises(YehuError, match="scheduler"):
+        with pytest.raises(YehuError, match=r"a\.json: |scheduler"):
             scheduler_address(str(tmp_path / "a.json"))
     with pytest.raises(YehuError, match="No such file"):
         scheduler_address(str(tmp_path / "none.json"))

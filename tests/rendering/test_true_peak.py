@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from yehu_server.rendering.true_peak import PHASES, TAPS, TruePeak
+from yehu_server.rendering.to_files import PHASES, TAPS, TruePeak
 
 
 def peak_of(sound: np.ndarray, block: int = 1000) -> float:

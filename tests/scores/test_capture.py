@@ -20,7 +20,6 @@ from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.bowing import default_bowing_table
-from yehu_server.core.player.calibration import PITCHES, ROWS_OF_A_YEHU, SPEEDS, Calibration
 from yehu_server.core.player.commands import (
     BEGIN,
     COMMAND,
@@ -37,6 +36,7 @@ from yehu_server.core.player.commands import (
     WRITE,
 )
 from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.note_tables import PITCHES, ROWS_OF_A_YEHU, SPEEDS, NoteTables
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.errors import OutputError, ScoreError, YehuError
 from yehu_server.params.table import ENGINE, SLOT, TABLE, find
@@ -151,7 +151,7 @@ def test_the_first_line_has_the_whole_beginning(tmp_path, write):
     assert player["values"] == {**defaults, "/engine/seed": 3.0}
 
 
-def measured(seed: int = 1) -> Calibration:
+def measured(seed: int = 1) -> NoteTables:
     """A calibration that might have been measured; its values take all digits to write."""
     chance = random.Random(seed)
     sharpening, levels = (
@@ -161,7 +161,7 @@ def measured(seed: int = 1) -> Calibration:
         )
         for within, more in [((-30.0, 60.0), ()), ((-40.0, -20.0), (None,))]
     )
-    return Calibration(440.0, (50.4 + chance.random(), 64.0 + chance.random()), sharpening, levels)
+    return NoteTables(440.0, (50.4 + chance.random(), 64.0 + chance.random()), sharpening, levels)
 
 
 def test_an_instrument_is_read_as_it_began(tmp_path):
@@ -533,7 +533,7 @@ def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
 def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
     commands = [(frame, RAMP, SPEED, 0.1, 0.0) for frame in range(10)]
     assert read_capture(write(tmp_path / "c", commands)).commands.tolist() == commands
-    monkeypatch.setattr("yehu_server.scores.capture.MOST_COMMANDS", 8)
+    monkeypatch.setattr("yehu_server.scores.capture.MAX_COMMANDS", 8)
     with pytest.raises(ScoreError, match="more than 8 events"):
         read_capture(tmp_path / "c")
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.jianpu.reader import MOST_BYTES, parse_jianpu, read_jianpu
+from yehu_server.scores.jianpu.reader import MAX_BYTES, parse_jianpu, read_jianpu
 from yehu_server.scores.score import notes_of
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.notated import Note, Written
@@ -235,7 +235,7 @@ def test_errors_name_the_file(tmp_path):
     for name, text, reason in [
         ("empty", b"", "is empty"),
         ("none", None, "cannot be read"),
-        ("large", b"1 " * MOST_BYTES, "larger than 1 MiB"),
+        ("large", b"1 " * MAX_BYTES, "larger than 1 MiB"),
         ("wrong", b"1 }", "line 1, column 3"),
     ]:
         path = tmp_path / f"{name}.jianpu"

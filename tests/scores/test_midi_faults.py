@@ -12,8 +12,8 @@ from pages import page
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import Score
-from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.smf.track import DamagedError
 
 LONG = 1_000_000  # bytes
 PAGE = "docs/midi_files.md"

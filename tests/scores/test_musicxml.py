@@ -27,7 +27,7 @@ from musicxml_text import (
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import NUMBER
 from yehu_server.scores.musicxml import reader
-from yehu_server.scores.musicxml.reader import DEEPEST, MOST_XML_BYTES, read_musicxml
+from yehu_server.scores.musicxml.reader import DEEPEST, MAX_XML_BYTES, read_musicxml
 from yehu_server.scores.written.notated import MARKS, SPANS
 from yehu_server.scores.written.words import meaning_of
 
@@ -352,7 +352,7 @@ def test_an_archive_that_is_damaged_or_made_to_harm_is_refused(subtests, read):
     whole = packed({"x.xml": score(FOUR)})
     for data, reason in [
         (packed({"readme.txt": "no"}), "without a score"),
-        (packed({"bomb.xml": b" " * (MOST_XML_BYTES + 1)}), "larger than"),
+        (packed({"bomb.xml": b" " * (MAX_XML_BYTES + 1)}), "larger than"),
         (packed({"META-INF/container.xml": b" " * (1 << 20), "x.xml": "<x/>"}), "larger than"),
         (packed({f"{n}.txt": "" for n in range(1001)}), "more than 1000 files"),
         *((whole[:cut], "archive") for cut in (10, len(whole) // 2, len(whole) - 5)),
@@ -369,7 +369,7 @@ LAUGHS = f'<!DOCTYPE x [<!ENTITY l0 "ha">{TENFOLD}'
 
 
 def test_a_file_that_is_no_score_is_refused_in_one_line(subtests, read, monkeypatch):
-    monkeypatch.setattr(reader, "MOST_ELEMENTS", 1000)
+    monkeypatch.setattr(reader, "MAX_ELEMENTS", 1000)
     for text, reason in [
         ("", "is empty"),
         ("hello", "no XML"),

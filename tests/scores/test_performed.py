@@ -429,7 +429,7 @@ def test_marks_that_were_not_understood_are_listed_and_a_score_without_notes_is_
 
 
 def test_a_score_of_too_many_moves_is_refused(monkeypatch):
-    monkeypatch.setattr(performing, "MOST_EVENTS", 1000)
+    monkeypatch.setattr(performing, "MAX_EVENTS", 1000)
     # Slides for a quarter of an hour each.
     notes = [note(10 * n, 10, 67, contour=((0.0, 0.0), (1.0, 12.0))) for n in range(3)]
     with pytest.raises(ScoreError, match="more than 1000 moves"):

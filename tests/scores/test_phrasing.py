@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from shaping import phrased
 
-from yehu_server.scores.phrases import phrases_of
-from yehu_server.scores.phrasing import LEAST_FOR_BOWS
-from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, notes_of
+from yehu_server.scores.phrasing import MIN_FOR_BOWS
+from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, notes_of, phrases_of
 
 BEAT_S = 0.5
 
@@ -101,7 +100,7 @@ def test_long_notes_leaps_repeated_notes_and_marked_bows_have_bows_of_their_own(
         assert slurs(phrased(score, 1.0)) == 0
     marked = bare((0.0, 0.3, 67), (0.25, 0.25, 69), (0.5, 0.25, 71), (0.75, 0.25, 72))
     assert slurs(phrased(marked, 1.0)) == slurs(marked) == 1
-    assert slurs(phrased(bare(*QUICK), LEAST_FOR_BOWS - 0.01)) == 0
+    assert slurs(phrased(bare(*QUICK), MIN_FOR_BOWS - 0.01)) == 0
 
 
 def test_phrases_end_with_rests_long_notes_and_after_four_bars():

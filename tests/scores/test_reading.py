@@ -21,8 +21,8 @@ from yehu_server.scores.reading import (
     tracks_with_notes,
 )
 from yehu_server.scores.score import Score, ScoreEvent, notes_of
-from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.smf.track import DamagedError
 
 TUNE = Path(__file__).resolve().parents[2] / "examples" / "shi_bei_jiu.mid"
 BAR = note("G4", 2) + note("A4", 2)

@@ -55,13 +55,13 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     from yehu_lab.practising.bowing_search import BowingSearch
     from yehu_lab.practising.candidates import DEFAULT
+    from yehu_lab.practising.practice_file import write_bowing_table
     from yehu_server.core.physics.grid import check_rate
     from yehu_server.core.player.bowing import PLACES
     from yehu_server.playing.bowing_tables import (
         bowing_table_beside,
         read_bowing_table,
         shipped_bowing_table,
-        write_bowing_table,
     )
     from yehu_server.playing.calibration_store import calibration_for
     from yehu_server.playing.preset_folders import Presets

@@ -16,6 +16,7 @@ from yehu_lab.dataset.draws import (
     read_distribution,
     shares_of,
 )
+from yehu_lab.sweeps.note_strokes import played_rate
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.note_range import YEHU
 from yehu_server.errors import ParameterError, did_you_mean
@@ -23,7 +24,7 @@ from yehu_server.params.table import find
 from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.tuning import STANDARD_A4
-from yehu_server.scores.gesture import CONTROLS, played_rate
+from yehu_server.scores.gesture import CONTROLS
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import PLAIN_NAME
 from yehu_server.util.values import choice, choices, line, number, whole

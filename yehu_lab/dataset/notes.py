@@ -12,7 +12,7 @@ from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.layout import MAX_FINGERS, control_columns, probe_columns
-from yehu_server.core.player.calibration import frequency_hz, wave_speed
+from yehu_server.core.player.note_tables import frequency_hz, wave_speed
 from yehu_server.errors import ParameterError
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key

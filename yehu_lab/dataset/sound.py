@@ -13,7 +13,7 @@ from yehu_lab.dataset.description import Description
 from yehu_lab.regimes.columns import REGIMES, UNBOWED
 from yehu_lab.regimes.judge import LEAST_PERIODS, PERIODS, judge
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import Calibration
+from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.tuning import STANDARD_A4
 
@@ -104,10 +104,10 @@ def judged(arrays: Mapping[str, Array], hertz: float, rate: float) -> dict[str, 
     return found
 
 
-_calibrated: dict[str, tuple[Quantities, Calibration]] = {}  # of this process
+_calibrated: dict[str, tuple[Quantities, NoteTables]] = {}  # of this process
 
 
-def calibrated(description: Description) -> tuple[Quantities, Calibration]:
+def calibrated(description: Description) -> tuple[Quantities, NoteTables]:
     """The instrument of a description, tuned to F4 and C5; and how it was."""
     key = description.key
     if key not in _calibrated:

@@ -36,8 +36,8 @@ from yehu_server.core.player.bowing import (
     PLACES,
     default_bowing_table,
 )
-from yehu_server.core.player.calibration import Calibration, frequency_hz
 from yehu_server.core.player.note_range import LOWEST_NOTE, NoteRange
+from yehu_server.core.player.note_tables import NoteTables, frequency_hz
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
 from yehu_server.playing.player import Player
@@ -77,7 +77,7 @@ class BowingSearch:
         self,
         rate: float,
         quantities: Quantities,
-        calibration: Calibration,
+        calibration: NoteTables,
         values: Mapping[str, float] | None = None,
         tuning: Callable[[float], float | None] = float,
     ) -> None:

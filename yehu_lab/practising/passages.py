@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.player.bowing import LAST
-from yehu_server.core.player.calibration import OPEN_NOTES
 from yehu_server.core.player.note_range import YEHU, NoteRange
+from yehu_server.core.player.note_tables import OPEN_NOTES
 
 Array = Any
 

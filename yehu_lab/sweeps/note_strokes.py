@@ -21,13 +21,14 @@ from yehu_lab.regimes.strokes import (
 )
 from yehu_lab.sweeps.axes import Axis
 from yehu_server.core.physics.elementary import log
+from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, TEXTURE, V_B, X_B
 from yehu_server.core.physics.quantities import Quantities, override
-from yehu_server.core.player.calibration import (
+from yehu_server.core.player.note_tables import (
     OPEN_NOTES,
     PITCHES,
     SPEEDS,
-    Calibration,
+    NoteTables,
     frequency_hz,
     ideal_position,
 )
@@ -35,7 +36,7 @@ from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.tuning import STANDARD_A4
-from yehu_server.scores.gesture import CONTROLS, Gesture, played_rate
+from yehu_server.scores.gesture import CONTROLS, Gesture
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, number
 
@@ -92,7 +93,7 @@ class Tuned:
     `measured`: the instrument that was calibrated, before it was tuned.
     """
 
-    calibration: Calibration
+    calibration: NoteTables
     quantities: Quantities
     measured: Quantities
 
@@ -277,6 +278,13 @@ class NoteBow:
             place[i], press[i] = bridge - (bridge - x) / shift, value["press"][i]
             frequency[i] = sounding * shift * quicker
         return place, press, frequency
+
+
+def played_rate(value: Any) -> float:
+    """A sample rate (Hz) that a tuned instrument plays at; raises ParameterError."""
+    rate = number(value)
+    check_rate(rate)
+    return rate
 
 
 def _is_of_model(name: str) -> bool:

@@ -21,6 +21,7 @@ from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
+from yehu_server.util import values
 
 log = logging.getLogger("yehu_server")
 
@@ -48,16 +49,16 @@ PathLike = str | os.PathLike[str]
 InstrumentLike = Quantities | Mapping[str, Any] | PathLike | HasBody
 
 
-def number(value: Any, name: str, lo: float = -math.inf, hi: float = math.inf) -> float:
+def number(
+    value: Any, name: str, lo: float = -math.inf, hi: float = math.inf, unit: str = ""
+) -> float:
     """Return a finite number within a range, also one of NumPy; raises ParameterError."""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise ParameterError(f"{name}: expected a number, got {value!r}")
-    found = float(value)
-    if not math.isfinite(found):
-        raise ParameterError(f"{name}: {found} is not finite")
-    if not lo <= found <= hi:
-        raise ParameterError(f"{name}: {found:g} is not within {lo:g} to {hi:g}")
-    return found
+    if isinstance(value, Real) and not isinstance(value, bool):
+        value = float(value)
+    try:
+        return values.number(value, lo, hi, unit)
+    except ParameterError as error:
+        raise ParameterError(f"{name}: {error}") from None
 
 
 def rate_of(sample_rate: float) -> int:
@@ -78,10 +79,7 @@ def setting(address: Any, value: Any) -> tuple[str, float]:
     if not isinstance(address, str):
         raise ParameterError(f"{address!r}: expected an address, such as '/playing/vibrato'")
     param = find(address)
-    found = number(value, address)
-    if param.clamped(found) != found:
-        raise ParameterError(f"{address}: {found:g} is not within {param.range_text}")
-    return address, found
+    return address, number(value, address, param.lo, param.hi, param.unit)
 
 
 def settings_of(settings: Mapping[str, float] | None) -> tuple[tuple[str, float], ...]:
@@ -113,18 +111,16 @@ def quantities_of(instrument: InstrumentLike | None) -> Quantities:
     return read_quantities(path_of(instrument, "instrument"))
 
 
-def path_of(value: Any, name: str) -> Path:
-    """Return a path; raises ParameterError where it is none."""
-    if not isinstance(value, str | os.PathLike):
-        raise ParameterError(f"{name}: expected a path, got {type(value).__name__}")
-    return Path(value)
-
-
 def name_of(value: Any, what: str) -> str:
     """Return a name or a path as text; raises ParameterError where it is neither."""
     if not isinstance(value, str | os.PathLike):
         raise ParameterError(f"{what}: expected a name or a path, not {value!r}")
     return os.fspath(value)
+
+
+def path_of(value: Any, name: str) -> Path:
+    """Return a path; raises ParameterError where it is none."""
+    return Path(name_of(value, name))
 
 
 OutOfRange = Literal["transpose", "clamp", "skip"]

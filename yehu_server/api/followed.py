@@ -28,7 +28,7 @@ from yehu_server.scores.score import Score
 Floats = NDArray[np.float64]
 Style = Literal["exact", "gentle", "even"]
 
-MOST_SEMITONES = 60.0
+MAX_SEMITONES = 60.0
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def follow(
         tuning=EQUAL if tuning is None else read_tuning(path_of(tuning, "tuning")),
     )
     if transpose is not None:
-        semitones = number(transpose, "transpose", -MOST_SEMITONES, MOST_SEMITONES)
+        semitones = number(transpose, "transpose", -MAX_SEMITONES, MAX_SEMITONES)
         wanted = replace(wanted, transpose=semitones)
     if isinstance(recording, str) or hasattr(recording, "__fspath__"):
         source = recording_of_file(path_of(recording, "recording"))

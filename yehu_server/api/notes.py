@@ -17,8 +17,8 @@ from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.playing.stringing import range_text
 from yehu_server.scores.score import BEND, MAX_DURATION_H, Score, ScoreEvent, Setting
+from yehu_server.scores.written.layout import SEMITONES
 
-SEMITONES = {"C": 0, "D": 2, "E": 4, "F": 5, "G": 7, "A": 9, "B": 11}
 ACCIDENTALS = {"#": 1, "♯": 1, "b": -1, "♭": -1}
 _NAME = re.compile(r"([A-Ga-g])([#♯b♭]*)(-?\d{1,2})([+-]\d{1,3}(?:\.\d+)?)?")
 HIGHEST_KEY = 127.0

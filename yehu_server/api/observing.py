@@ -18,7 +18,14 @@ from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS, control_column
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT
 from yehu_server.playing.player import Player
-from yehu_server.simulation.run import MAX_BYTES, Simulation, metadata_of, shape_of, signals
+from yehu_server.simulation.run import (
+    MAX_BYTES,
+    Simulation,
+    metadata_of,
+    shape_of,
+    shapes_of,
+    signals,
+)
 
 Floats = NDArray[np.float64]
 
@@ -123,16 +130,11 @@ class Run:
         arrays: dict[str, NDArray[Any]] = {"sound": out} | signals(
             probes, controls, self._instrument.rate
         )
+        quantities = self._instrument.spec.quantities
         if strings_every:
-            arrays["strings_time"] = arrays["time"][::strings_every]
-            for i, string in enumerate(self._instrument.spec.quantities.strings):
-                arrays[f"string_{i + 1}"] = np.array(kept[i])
-                arrays[f"x_{i + 1}"] = np.linspace(0.0, string.L, int(model["N"][i]) + 1)
-        instrument = self._instrument
-        metadata = metadata_of(
-            model, state, frames, instrument.spec.quantities, self._rig["refined"]
-        )
-        return Simulation(arrays, {"seed": instrument.seed} | metadata)
+            arrays |= shapes_of(kept, model, quantities, arrays["time"][::strings_every])
+        metadata = metadata_of(model, state, frames, quantities, self._rig["refined"])
+        return Simulation(arrays, {"seed": self._instrument.seed} | metadata)
 
     def _take_over(self) -> None:
         """Take the parameters of the curves from the player, and put them to their first values."""

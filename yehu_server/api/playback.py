@@ -24,7 +24,7 @@ Subtype = Literal["16", "24", "float"]
 FULL_SCALE = 32767  # of 16 bits
 SHELL_OF_NOTEBOOKS = "ZMQInteractiveShell"
 PEAK = 10.0 ** (-1.0 / 20.0)  # of a sound that is normalized
-MOST_BYTES = 200 * 2**20  # of a sound within a page
+MAX_BYTES = 200 * 2**20  # of a sound within a page
 
 
 class AudioWidget:
@@ -65,7 +65,7 @@ class AudioWidget:
         return file.getvalue()
 
     def _repr_html_(self) -> str:
-        if 2 * self.sound.size > MOST_BYTES:
+        if 2 * self.sound.size > MAX_BYTES:
             return "this sound is too long for a page: save it as a file"
         data = base64.b64encode(self.wav()).decode()
         return f'<audio controls src="data:audio/wav;base64,{data}"></audio>'

@@ -27,9 +27,8 @@ from yehu_server.errors import ParameterError
 from yehu_server.playing.mapping import DEFAULT
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.rendering.summary import FATE, Summary, counted, summary_of
-from yehu_server.rendering.to_files import NORMALIZED_PEAK
-from yehu_server.rendering.true_peak import TruePeak
+from yehu_server.rendering.summary import Summary, summary_of
+from yehu_server.rendering.to_files import NORMALIZED_PEAK, TruePeak
 from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import Score
@@ -229,7 +228,7 @@ def render(
     whole_part = Part.shaped([read], playing)
     get_ready()
     sound, asked, summary = _played(whole_part, options, progress)
-    warnings = (*read.remarks, *read.warnings, *_remarks(summary))
+    warnings = (*read.remarks, *read.warnings, *summary.remarks())
     return Rendering(sound, rate, read.name, warnings, summary, asked, playing.a4)
 
 
@@ -240,14 +239,12 @@ def _played(
     start = time.perf_counter()
     performance = Performance([part], options)
     blocks, times, pitches, frames = [], [], [], 0
-    for samples in performance.blocks():
+    for samples in performance.blocks(progress):
         blocks.append(samples)
         frames += len(samples)
         [asked] = performance.target_pitches
         times.append(frames / options.rate)
         pitches.append(np.nan if asked is None else asked)
-        if progress is not None:
-            progress(frames / options.rate, performance.score_frames / options.rate)
     empty = np.zeros((0,) if options.is_mono else (0, 2), np.float32)
     sound = np.concatenate(blocks) if blocks else empty
     if options.normalize:
@@ -260,21 +257,6 @@ def _played(
     elapsed_s = time.perf_counter() - start
     summary = summary_of(performance, frames / options.rate, elapsed_s, peak, rms)
     return sound, (np.array(times), np.array(pitches)), summary
-
-
-def _remarks(summary: Summary) -> list[str]:
-    """List what was not played as it is written."""
-    lines = []
-    if summary.percussion_notes:
-        lines.append(
-            f"channel 10 is percussion: {counted(summary.percussion_notes, 'note')} left out"
-        )
-    if summary.notes_out_of_range:
-        notes = counted(summary.notes_out_of_range, "note")
-        lines.append(f"{notes} outside {summary.range}, {FATE[summary.policy]}")
-    if summary.lost_states:
-        lines.append(f"the state was lost and set to rest: {counted(summary.lost_states, 'time')}")
-    return lines
 
 
 def _channels(channels: Any) -> frozenset[int] | None:

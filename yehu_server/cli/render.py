@@ -93,7 +93,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
     if render_folder.is_for_folder(arguments):
         return render_folder.run(arguments)
-    from yehu_server.scores.smf.faults import DamagedError
+    from yehu_server.scores.smf.track import DamagedError
 
     try:
         with piped_in(arguments), quiet_pipe(arguments.output):

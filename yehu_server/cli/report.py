@@ -17,7 +17,7 @@ from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.rendering.replay import Replayed
-from yehu_server.rendering.summary import FATE, PartSummary, Summary, counted
+from yehu_server.rendering.summary import PartSummary, Summary, counted
 from yehu_server.simulation.run import Simulation
 
 if TYPE_CHECKING:
@@ -43,19 +43,7 @@ def render_report(target: Path, summary: Summary) -> str:
         lines += map(_part_line, summary.parts)
     else:
         lines.append(f"channels: {heard}" if heard else "no notes to play")
-    if summary.percussion_notes:
-        notes = counted(summary.percussion_notes, "note")
-        lines.append(f"channel 10 is percussion: {notes} not played; --channel 10 plays them")
-    if summary.notes_out_of_range:
-        notes = counted(summary.notes_out_of_range, "note")
-        lines.append(f"{notes} outside {summary.range}, {FATE[summary.policy]}")
-    if summary.unknown_programs:
-        programs = ", ".join(map(str, summary.unknown_programs))
-        lines.append(f"no preset for the programs {programs}: ignored")
-    if summary.unconverged_solves:
-        lines.append(f"{counted(summary.unconverged_solves, 'friction solve')} did not converge")
-    if summary.lost_states:
-        lines.append(f"the state was lost and set to rest: {counted(summary.lost_states, 'time')}")
+    lines += summary.remarks("; --channel 10 plays them")
     if summary.friction_bound >= NOTABLE_BOUND:
         lines.append(
             "note: at this sample rate the bow sticks less reliably; a higher --rate is better"

@@ -35,18 +35,18 @@ SWITCH = 1.5  # cost of a pitch that begins or ends
 SLOPE, FREE, LEAP = 6.0, 0.02, 3.0
 QUIET = 2.0  # cost of a pitch in a frame that is quieter than the gate
 GATE_DB, LOUD_SHARE = 45.0, 0.95  # below the level that this part of the frames does not reach
-LEAST_DB = -85.0
+MIN_DB = -85.0
 UNVOICED = -1
 Progress = Callable[[float, float], None]
 # Of the loud frames: the least share with a pitch, the least median of their clarity, and that from
 # which there is no warning.
-LEAST_VOICED, LEAST_CLARITY, CLEAR = 0.08, 0.55, 0.8
+MIN_VOICED, MIN_CLARITY, CLEAR = 0.08, 0.55, 0.8
 LOUD_DB = 25.0  # below the loudest
 
 
 def gate_of(level_db: Array) -> float:
     """The level (dB) below which a sound is taken for silence."""
-    return max(float(np.quantile(level_db, LOUD_SHARE)) - GATE_DB, LEAST_DB)
+    return max(float(np.quantile(level_db, LOUD_SHARE)) - GATE_DB, MIN_DB)
 
 
 def chosen_candidates(frames: Frames) -> Array:
@@ -148,10 +148,10 @@ def _warnings(name: str, level_db: Array, clarity: Array) -> list[str]:
     loud = level_db > max(level_db.max(initial=SILENCE_DB) - LOUD_DB, gate_of(level_db))
     voiced = clarity[loud] > 0.0
     share = float(voiced.mean()) if len(voiced) else 0.0
-    if share < LEAST_VOICED:
+    if share < MIN_VOICED:
         raise ScoreError(f"{name}: no voice is heard: {100.0 * share:.0f} % of it has a pitch")
     typical = float(np.median(clarity[loud][voiced]))
-    if typical < LEAST_CLARITY:
+    if typical < MIN_CLARITY:
         raise ScoreError(f"{name}: not a single voice: chords or noise cannot be followed")
     if typical < CLEAR:
         return ["several voices or much noise: what is heard is unsure"]

@@ -104,12 +104,10 @@ def _octaves(notes: list[HeardNote], sharper: float, within: NoteRange) -> float
     pitches = np.array([note.pitch for note in notes]) + sharper
     lengths = np.array([note.end - note.start for note in notes], np.float64)
     choices = sorted(range(-60, 61, 12), key=abs)
-    share = [lengths[_is_in_range(pitches + shift, within)].sum() for shift in choices]
+    lowest, highest = within.lowest - 0.5, within.highest + 0.5
+    is_in_range = [(pitches > lowest - shift) & (pitches < highest - shift) for shift in choices]
+    share = [lengths[each].sum() for each in is_in_range]
     return float(choices[int(np.argmax(share))])
-
-
-def _is_in_range(pitches: Array, within: NoteRange) -> Array:
-    return (pitches > within.lowest - 0.5) & (pitches < within.highest + 0.5)
 
 
 class _Builder:

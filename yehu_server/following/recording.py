@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ Array = Any
 
 RATE = 16000  # Hz, of the analysis
 LOWEST_RATE, HIGHEST_RATE = 8000, 768_000
-MOST_CHANNELS = 64
+MAX_CHANNELS = 64
 SHORTEST_S = 0.05
 BLOCK_S = 2.0
 QUIETEST = 1e-4  # RMS of full scale, below which there is only silence
@@ -27,7 +28,7 @@ WORKING_PEAK = 0.5  # to which sounds are scaled: as the pitch tracker was train
 CLIPPED, CLIPPED_SHARE = 0.999, 1e-3  # of full scale; of all samples, for a warning
 # Where the mean of the channels has less than this share of the loudest's power, that one is taken:
 # the others are silent, or cancel each other.
-LEAST_SHARE = 0.3
+MIN_SHARE = 0.3
 
 
 @dataclass(frozen=True)
@@ -57,43 +58,45 @@ def recording_of_file(path: Path, max_duration_h: float = MAX_DURATION_H) -> Rec
     Raises ScoreError, one line with the name: where it cannot be read, is no sound, or lasts too
     long.
     """
-    import soundfile
-
-    try:
-        with open_regular(path) as data, soundfile.SoundFile(data) as file:
-            rate, frames, channels = file.samplerate, file.frames, file.channels
-    except OSError as error:
-        raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
-    except ValueError as error:  # a NUL in the name
-        raise ScoreError("cannot be read (no such file name)") from error
-    except soundfile.LibsndfileError as error:
-        raise ScoreError(f"{path}: not a sound file ({error.error_string})") from error
-    if channels > MOST_CHANNELS:
-        raise ScoreError(f"{path}: has {channels} channels, more than {MOST_CHANNELS}")
+    with _opened(path) as file:
+        rate, frames, channels = file.samplerate, file.frames, file.channels
+    if channels > MAX_CHANNELS:
+        raise ScoreError(f"{path}: has {channels} channels, more than {MAX_CHANNELS}")
     _check_rate(str(path), rate)
     check_duration(frames / rate, max_duration_h, f"{path}: the recording lasts")
 
     size = round(BLOCK_S * rate)
 
     def blocks() -> Iterator[Array]:
-        try:
-            with open_regular(path) as data, soundfile.SoundFile(data) as file:
-                # Not its own blocks(), which needs the length of a sound: some files have none.
-                while len(block := file.read(size, dtype="float32", always_2d=True)):
-                    yield block
-        except OSError as error:
-            raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
-        except soundfile.LibsndfileError as error:
-            raise ScoreError(f"{path}: cannot be read ({error.error_string})") from error
+        with _opened(path) as file:
+            # Not its own blocks(), which needs the length of a sound: some files have none.
+            while len(block := file.read(size, dtype="float32", always_2d=True)):
+                yield block
 
     return Recording(str(path), rate, blocks)
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Open a sound file; raises ScoreError where it cannot be read."""
+    import soundfile
+
+    try:
+        with open_regular(path) as data, soundfile.SoundFile(data) as file:
+            yield file
+    except OSError as error:
+        raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
+    except ValueError as error:  # a NUL in the name
+        raise ScoreError("cannot be read (no such file name)") from error
+    except soundfile.LibsndfileError as error:
+        raise ScoreError(f"{path}: not a sound file ({error.error_string})") from error
 
 
 def recording_of_samples(samples: Array, rate: int, name: str = "the recording") -> Recording:
     """An array [shape=(frames,) or (frames, channels)] as a recording; raises ScoreError."""
     sound = np.asarray(samples)
     sound = sound[:, None] if sound.ndim == 1 else sound
-    if sound.ndim != 2 or not 1 <= sound.shape[1] <= MOST_CHANNELS:
+    if sound.ndim != 2 or not 1 <= sound.shape[1] <= MAX_CHANNELS:
         raise ScoreError(f"{name}: expected frames, or frames by channels, not {sound.shape}")
     if not (np.issubdtype(sound.dtype, np.floating) or np.issubdtype(sound.dtype, np.integer)):
         raise ScoreError(f"{name}: expected numbers, not {sound.dtype}")
@@ -147,7 +150,7 @@ def downmix_of(recording: Recording) -> Downmix:
     weights = np.full(len(powers), 1.0 / len(powers))
     peak = mean_peak
     warnings = []
-    if mean_power < LEAST_SHARE * powers[loudest]:
+    if mean_power < MIN_SHARE * powers[loudest]:
         weights = np.eye(len(powers))[loudest]
         peak = float(peaks[loudest])
         warnings.append(f"channel {loudest + 1} of {len(powers)} alone is followed")

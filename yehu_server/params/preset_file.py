@@ -17,7 +17,7 @@ from yehu_server.util.values import whole, words
 
 VERSION = 1
 PROGRAMS = 128  # of MIDI, counted from 1
-MOST_REMARKS = 10
+MAX_REMARKS = 10
 # A preset may have all parameters except those that the player moves as notes sound.
 POSSIBLE = {param.address: param for param in TABLE if not param.player_controlled}
 # Not saved, since they are no part of a sound: the state of controllers, the seed, and places on
@@ -46,11 +46,11 @@ class Preset:
     def remarks(self) -> list[str]:
         """Warnings about the unknown addresses of a file, a line each."""
         lines = []
-        for address in self.unknown[:MOST_REMARKS]:
+        for address in self.unknown[:MAX_REMARKS]:
             hint = did_you_mean(address, POSSIBLE)
             lines.append(f"{self.name}: unknown parameter {address!r}, left out{hint}")
-        if len(self.unknown) > MOST_REMARKS:
-            lines.append(f"{self.name}: and {len(self.unknown) - MOST_REMARKS} more")
+        if len(self.unknown) > MAX_REMARKS:
+            lines.append(f"{self.name}: and {len(self.unknown) - MAX_REMARKS} more")
         return lines
 
 

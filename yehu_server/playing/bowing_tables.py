@@ -1,4 +1,4 @@
-"""Read and write bowing tables: those shipped for usual sample rates, or the user's own.
+"""Read bowing tables: those shipped for usual sample rates, or the user's own.
 
 Users know such a file as a practice: `practise` writes it, `--practice` takes it.
 """
@@ -6,7 +6,6 @@ Users know such a file as a practice: `practise` writes it, `--practice` takes i
 from __future__ import annotations
 
 import json
-import re
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -17,14 +16,15 @@ from yehu_server.core.physics.elementary import log
 from yehu_server.core.player.bowing import BOWING_SIZE, FIRST, LAST, PLACES, default_bowing_table
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
-from yehu_server.util.files import read_text, write_bytes
+from yehu_server.util.files import read_text
 from yehu_server.util.parsing import parse_json
 
 Array = Any
 
 SHIPPED = Path(__file__).parent / "practices.json"
+ENDING = ".practice.json"
 FORMAT, VERSION = "yehu-server practice", 2
-MOST_BYTES = 1 << 20
+MAX_BYTES = 1 << 20
 # Bounds of top speed (m/s), three shares of Schelleng's limit, distance, finger force (N).
 LOWEST = (0.02, 0.0, 0.0, 0.0, 0.2, 0.0)
 HIGHEST = (2.0, 12.0, 12.0, 12.0, 5.0, 10.0)
@@ -42,32 +42,8 @@ def _shipped() -> dict[float, Array]:
     return {float(entry["rate"]): table_of(entry) for entry in data}
 
 
-def as_text(data: Any) -> str:
-    """What `as_data` made as JSON, with a line for each note."""
-    text = json.dumps(data, indent=1)
-    row = re.compile(r"\[\s+([-\d.,\s]+?)\s+\]")
-    return row.sub(lambda values: f"[{' '.join(values[1].split())}]", text) + "\n"
-
-
-def as_data(table: Array, rate: float) -> dict[str, Any]:
-    """A bowing table as JSON values: what is bowed otherwise than in `default_bowing_table`."""
-    ordinary = default_bowing_table()
-    bowing = {
-        name: {
-            str(place): {
-                str(FIRST + row): [round(float(value), 4) for value in table[string, i, row]]
-                for row in range(LAST - FIRST + 1)
-                if not np.allclose(table[string, i, row], ordinary[string, i, row], atol=1e-4)
-            }
-            for i, place in enumerate(PLACES)
-        }
-        for string, name in enumerate(STRING_NAMES)
-    }
-    return {"format": FORMAT, "version": VERSION, "rate": rate, "bowing": bowing}
-
-
 def table_of(data: Any) -> Array:
-    """The bowing table of JSON values that `as_data` made; raises ParameterError."""
+    """The bowing table of a practice file's JSON values; raises ParameterError."""
     table = default_bowing_table()
     try:
         if data["format"] != FORMAT or data["version"] != VERSION:
@@ -94,7 +70,7 @@ def _bowing_of(note: str, values: Any) -> Array:
 def read_bowing_table(path: Path) -> Array:
     """Read a practice file; raises ScoreError if not readable, ParameterError if it is none."""
     try:
-        return table_of(parse_json(read_text(path, MOST_BYTES)))
+        return table_of(parse_json(read_text(path, MAX_BYTES)))
     except OSError as error:
         raise ScoreError(f"{path}: {error.strerror}") from error
     except ParameterError as error:
@@ -104,17 +80,6 @@ def read_bowing_table(path: Path) -> Array:
 
 
 def bowing_table_beside(instrument: Path | None) -> Path | None:
-    """The bowing table beside an instrument file, of the same name and ``.practice.json``."""
-    return next((path for path in bowing_tables_beside(instrument) if path.is_file()), None)
-
-
-def bowing_tables_beside(instrument: Path | None) -> list[Path]:
-    """Where the bowing table of an instrument file would be, whether it is there or not."""
-    if instrument is None or not instrument.name:
-        return []
-    return [instrument.with_suffix(".practice.json")]
-
-
-def write_bowing_table(path: Path, table: Array, rate: float) -> None:
-    """Write a practice file; raises OutputError where it cannot be written."""
-    write_bytes(path, as_text(as_data(table, rate)).encode())
+    """The bowing table beside an instrument file, of the same name and `ENDING`, if it is there."""
+    path = instrument.with_suffix(ENDING) if instrument is not None and instrument.name else None
+    return path if path is not None and path.is_file() else None

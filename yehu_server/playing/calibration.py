@@ -35,7 +35,7 @@ from yehu_server.core.player.bowing import (
     at_pitch,
     share,
 )
-from yehu_server.core.player.calibration import (
+from yehu_server.core.player.note_tables import (
     ABOVE,
     GAINS,
     OPEN_NOTES,
@@ -43,7 +43,7 @@ from yehu_server.core.player.calibration import (
     PLAIN,
     SPEEDS,
     USUAL_SPEED,
-    Calibration,
+    NoteTables,
     Tables,
     frequency_hz,
     ideal_position,
@@ -101,7 +101,7 @@ def calibration_key(
         for folder in ("physics", "controls")
         for source in sorted((core / folder).glob("*.py"))
     ]
-    sources += [core / "player" / f"{name}.py" for name in ("bowing", "calibration")]
+    sources += [core / "player" / f"{name}.py" for name in ("bowing", "note_tables")]
     sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output")]
     sources += [Path(__file__)]
     bowing = shipped_bowing_table(rate) if bowing is None else bowing
@@ -116,7 +116,7 @@ def calibrate(
     a4: float = 440.0,
     bowing: Array | None = None,
     progress: Progress | None = None,
-) -> Calibration:
+) -> NoteTables:
     """Measure a calibration by bowing the model.
 
     `rate`: sample rate (Hz).
@@ -140,7 +140,7 @@ def calibrate(
     rows: list[Any] = []
     with ThreadPoolExecutor(os.cpu_count()) as workers:  # the model runs without the GIL
         first, second = workers.map(lambda i: _tension(untuned, i), (0, 1))
-        tuned = replace(untuned, quantities=Calibration(a4, (first, second), ()).tuned(quantities))
+        tuned = replace(untuned, quantities=NoteTables(a4, (first, second), ()).tuned(quantities))
         measured = workers.map(lambda job: _stopped_note(tuned, *job), jobs)
         for done, row in enumerate(measured, start=1):
             rows.append(row)
@@ -156,9 +156,7 @@ def calibrate(
         levels.append(_completed(np.vstack([open_levels, own[:, :, 1]]), SILENCE_DB))
     centroids, louder = _all_centroids(tuned, sharpening)
     tensions = (first, second)
-    return Calibration(
-        a4, tensions, tuple(sharpening), tuple(levels), open_notes, centroids, louder
-    )
+    return NoteTables(a4, tensions, tuple(sharpening), tuple(levels), open_notes, centroids, louder)
 
 
 def _bow(
@@ -199,7 +197,7 @@ def _steady(setup: _Setup, string: int, pitch: float, speed: float, x_f: float |
 
 
 def _all_centroids(setup: _Setup, sharpening: Sequence[Any]) -> tuple[Tables, Tables]:
-    """Two tables of all notes: `Calibration.centroids` and `louder`."""
+    """Two tables of all notes: `NoteTables.centroids` and `louder`."""
     usual = SPEEDS.index(USUAL_SPEED)
     centroids, louder = [], []
     with ThreadPoolExecutor(os.cpu_count()) as workers:

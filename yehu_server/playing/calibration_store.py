@@ -19,13 +19,13 @@ import numpy as np
 from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import (
+from yehu_server.core.player.note_tables import (
     GAINS,
     OPEN_NOTES,
     PITCHES,
     ROWS_OF_A_YEHU,
     SPEEDS,
-    Calibration,
+    NoteTables,
     Tables,
 )
 from yehu_server.errors import ParameterError
@@ -47,15 +47,15 @@ log = logging.getLogger(__name__)
 
 SHIPPED = Path(__file__).parent / "calibrations.json"
 # Bounds of what the rounds of a calibration can reach.
-MOST_CENTS = ROUNDS * PLAUSIBLE_CENTS
-MOST_SHARPENING_CENTS = max(USUAL_CENTS) + len(SPEEDS) * MOST_CENTS
-MOST_LEVEL_DB = 200.0
-MOST_CENTROID_HZ, MOST_LOUDER_DB = 1e5, 40.0
-LEAST_N, MOST_N = 1.0, 500.0
+MAX_CENTS = ROUNDS * PLAUSIBLE_CENTS
+MAX_SHARPENING_CENTS = max(USUAL_CENTS) + len(SPEEDS) * MAX_CENTS
+MAX_LEVEL_DB = 200.0
+MAX_CENTROID_HZ, MAX_LOUDER_DB = 1e5, 40.0
+MIN_N, MAX_N = 1.0, 500.0
 HIGHEST_KEY = 127
 
 
-_unkept: dict[str, Calibration] = {}  # what could not be written, by its key
+_unkept: dict[str, NoteTables] = {}  # what could not be written, by its key
 
 
 def calibration_for(
@@ -65,7 +65,7 @@ def calibration_for(
     a4: float = 440.0,
     bowing: Any = None,
     progress: Progress | None = None,
-) -> Calibration:
+) -> NoteTables:
     """Find the calibration of an instrument, or measure it, in some seconds.
 
     `rate`: sample rate (Hz).
@@ -90,7 +90,7 @@ def calibration_for(
     return found
 
 
-def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibration:
+def read_calibration(data: Any, quantities: Quantities, a4: float) -> NoteTables:
     """Read the JSON values of a calibration of an instrument.
 
     Raises ParameterError where they are none, are for another pitch, or beyond what can be
@@ -102,12 +102,12 @@ def read_calibration(data: Any, quantities: Quantities, a4: float) -> Calibratio
     for i, tension in enumerate(found.tensions):
         usual = starting_tension(quantities, a4, i)
         off = cents(tension, usual) / 2.0 if tension > 0.0 else math.inf
-        if not abs(off) <= MOST_CENTS:
+        if not abs(off) <= MAX_CENTS:
             raise ParameterError(f"has a tension of {tension:g} N where {usual:.3g} is usual")
     return found
 
 
-def read_measured(data: Any) -> Calibration:
+def read_measured(data: Any) -> NoteTables:
     """Read the JSON values of a calibration, of whatever instrument.
 
     Raises ParameterError where they are none, or beyond what can be measured.
@@ -116,23 +116,21 @@ def read_measured(data: Any) -> Calibration:
         first, second = map(float, data["tensions"])
         inner, outer = (whole(note, 0, HIGHEST_KEY) for note in data.get("open_notes", OPEN_NOTES))
         a4 = float(data["a4"])
-        most, of_speeds = MOST_SHARPENING_CENTS, len(SPEEDS)
+        most, of_speeds = MAX_SHARPENING_CENTS, len(SPEEDS)
         sharpening = _tables(data["sharpening"], 0, of_speeds, -most, most)
-        levels = _tables(data["levels"], 1, of_speeds, -MOST_LEVEL_DB, MOST_LEVEL_DB)
+        levels = _tables(data["levels"], 1, of_speeds, -MAX_LEVEL_DB, MAX_LEVEL_DB)
         centroids, louder = data.get("centroids", ()), data.get("louder", ())  # older captures
         if len(centroids) or len(louder):
-            centroids = _tables(centroids, 1, len(GAINS), 0.0, MOST_CENTROID_HZ)
-            louder = _tables(louder, 1, len(GAINS), -MOST_LOUDER_DB, MOST_LOUDER_DB)
+            centroids = _tables(centroids, 1, len(GAINS), 0.0, MAX_CENTROID_HZ)
+            louder = _tables(louder, 1, len(GAINS), -MAX_LOUDER_DB, MAX_LOUDER_DB)
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
         raise ParameterError("is not a calibration") from error
-    if not LEAST_N <= min(first, second) <= max(first, second) <= MOST_N:  # also refuses NaN
+    if not MIN_N <= min(first, second) <= max(first, second) <= MAX_N:  # also refuses NaN
         raise ParameterError(f"has tensions of {first:g} and {second:g} N")
     if inner >= outer:
         raise ParameterError(f"open strings of {inner} and {outer}: expected the lower one first")
     tensions, open_notes = (first, second), (inner, outer)
-    return Calibration(
-        a4, tensions, sharpening, levels, open_notes, tuple(centroids), tuple(louder)
-    )
+    return NoteTables(a4, tensions, sharpening, levels, open_notes, tuple(centroids), tuple(louder))
 
 
 def _tables(data: Any, more_rows: int, columns: int, lo: float, hi: float) -> Tables:
@@ -158,7 +156,7 @@ def _shipped() -> dict[str, Any]:
     return found
 
 
-def _kept(path: Path, quantities: Quantities, a4: float) -> Calibration | None:
+def _kept(path: Path, quantities: Quantities, a4: float) -> NoteTables | None:
     """The calibration in a file; None where there is none, or it is damaged."""
     try:
         payload = read_checksummed(path)

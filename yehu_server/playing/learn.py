@@ -160,14 +160,8 @@ def learn(
 
     It replaces all other binds of the target and of the source, and moves the target for all notes,
     on whichever device they are played. Those of the user's file are kept with it, for `unlearn`.
-    Raises MappingError where the file is wrong or cannot be written; nothing is changed then.
-
-    Returns
-    -------
-    mapping : Mapping
-        With the bind.
-    path : Path
-        The file that it was saved to.
+    Returns the mapping with the bind, and the file that it was saved to. Raises MappingError where
+    the file is wrong or cannot be written; nothing is changed then.
     """
     param = settable_param(target, "learn one")
     bind = Bind(
@@ -190,15 +184,8 @@ def learn(
 def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     """Remove the learned bind of a target from the user's file, and give back what it replaced.
 
-    Where none is learned, those that the user has written are removed. Raises MappingError as
-    `learn`.
-
-    Returns
-    -------
-    mapping : Mapping
-        Without them.
-    count : int
-        Number of binds removed.
+    Where none is learned, those that the user has written are removed. Returns the mapping without
+    them, and how many were removed. Raises MappingError as `learn`.
     """
     address = find(target).address
     path = own_file(mapping)

@@ -18,7 +18,7 @@ from platformdirs import user_config_path
 from yehu_server.core.midi.tables import MOST_BINDS, MOST_POINTS
 from yehu_server.errors import MappingError
 from yehu_server.playing.bind import Bind, Breakpoints, override_key
-from yehu_server.playing.mapping_file import MOST_BYTES, MappingFile, document_of, read_mapping_file
+from yehu_server.playing.mapping_file import MAX_BYTES, MappingFile, document_of, read_mapping_file
 from yehu_server.playing.sources import is_address
 from yehu_server.util.files import shipped_folder
 
@@ -116,7 +116,7 @@ def with_bases(path: Path, contents: MappingFile) -> Mapping:
     """
     layers, files = [contents], [path]
     while (base := layers[-1].base) is not None:
-        table = document_of(files[-1]).read(files[-1], MOST_BYTES).toml()
+        table = document_of(files[-1]).read(files[-1], MAX_BYTES).toml()
         below = _named(base, files[-1]) if _is_name(base) else None
         if below is None:
             table.add_error("base", _unknown(base))

@@ -24,7 +24,7 @@ from yehu_server.playing.sources import CHANNELS
 from yehu_server.util.documents import MAX_ERRORS, Document, Fields
 from yehu_server.util.values import brief, choice, flag, line, number, whole
 
-MOST_BYTES = 1 << 17  # one that is watched is parsed beside the playing
+MAX_BYTES = 1 << 17  # one that is watched is parsed beside the playing
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def document_of(path: Path, text: str = "") -> Document:
 
 def text_of(path: Path) -> str:
     """The text of a file; raises MappingError where it cannot be read or is not UTF-8."""
-    return document_of(path).read(path, MOST_BYTES).text
+    return document_of(path).read(path, MAX_BYTES).text
 
 
 def read_mapping_file(path: Path, text: str | None = None) -> MappingFile:
@@ -85,7 +85,7 @@ def _without_null(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 LONGEST_SMOOTHING_MS = 5000.0
-MOST_POINTS = 1024
+MAX_POINTS = 1024
 
 
 def settable_param(address: str, instead: str) -> Param:
@@ -103,12 +103,6 @@ def read_settings(table: Fields) -> tuple[tuple[str, float], ...]:
 
 def _start(address: str, value: Any) -> float:
     return settable_param(address, "set one").within(value)
-
-
-def read_span(value: Any, param: Param | None) -> tuple[float, float]:
-    """Read two values within the range of a parameter, if that is known."""
-    lo, hi = (param.lo, param.hi) if param else (-math.inf, math.inf)
-    return read_pair(value, "[from, to]", lo, hi)
 
 
 def read_input_range(value: Any) -> tuple[float, float]:
@@ -142,8 +136,8 @@ def _breakpoints(value: list[Any]) -> Breakpoints:
         raise ParameterError("the points have to begin at 0 and end at 1")
     if any(later <= position for position, later in itertools.pairwise(positions)):
         raise ParameterError("each point has to lie beyond the one before it")
-    if len(points) > MOST_POINTS:
-        raise ParameterError(f"{len(points)} points are more than {MOST_POINTS}")
+    if len(points) > MAX_POINTS:
+        raise ParameterError(f"{len(points)} points are more than {MAX_POINTS}")
     return Breakpoints(points)
 
 
@@ -180,7 +174,8 @@ def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
         "target", lambda value: settable_param(line(value), "map to one"), None
     )
     curve: Curve | Breakpoints | None = table.read("curve", read_curve, None)
-    span = table.read("span", read_span, None, param)
+    lo, hi = (param.lo, param.hi) if param else (-math.inf, math.inf)
+    span = table.read("span", read_pair, None, "[from, to]", lo, hi)
     bind = Bind(
         source or "",
         param.address if param else "",

@@ -11,12 +11,12 @@ from typing import Any
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, read_quantities
-from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.core.player.velocity import NEUTRAL
 from yehu_server.playing.bowing_tables import (
+    ENDING,
     bowing_table_beside,
-    bowing_tables_beside,
     read_bowing_table,
     shipped_bowing_table,
 )
@@ -96,7 +96,7 @@ class PlayingOptions:
         rubato = phrasing if self.rubato is None else self.rubato
         return replace(self, phrasing=phrasing, rubato=rubato)
 
-    def calibration(self, rate: float, progress: Progress | None = None) -> Calibration:
+    def calibration(self, rate: float, progress: Progress | None = None) -> NoteTables:
         """The calibration of the instrument, bowed so; see `calibration_for`."""
         return calibration_for(
             rate, self.quantities, a4=self.a4, bowing=self.bowing, progress=progress
@@ -105,14 +105,14 @@ class PlayingOptions:
     @property
     def files(self) -> tuple[Path, ...]:
         """All files that it was read from, and where a bowing table was searched for."""
-        named = [path for path in (self.preset, self.practice, self.instrument) if path is not None]
-        beside = bowing_tables_beside(self.instrument)
-        return (*self.mapping.files, *named, *beside, *self.tuning.files)
+        beside = self.instrument and self.instrument.with_suffix(ENDING)
+        named = filter(None, (self.preset, self.practice, self.instrument, beside))
+        return (*self.mapping.files, *named, *self.tuning.files)
 
     def spec(
         self,
         rate: float,
-        calibration: Calibration,
+        calibration: NoteTables,
         *,
         start_values: Values[str, float] | None = None,
         body: int = 0,
@@ -153,6 +153,5 @@ class PlayingOptions:
 
     def mapped(self, player: Player) -> Player:
         """A player that plays by the mapping from the beginning on; see `Player.mapped`."""
-        channels = None if self.channels is None else set(self.channels)
         programs = self.presets.programs() if self.programs else None
-        return player.mapped(self.mapping, channels, start=self.start, programs=programs)
+        return player.mapped(self.mapping, self.channels, start=self.start, programs=programs)

@@ -76,19 +76,14 @@ class PartState:
     def __init__(self, instruments: Sequence[Instrument], part: int = 0) -> None:
         self.part = part
         self.instruments = tuple(instruments)
-        self._instrument = instruments[0]
+        self.instrument = instruments[0]  # which has the record of the part
         self.mapping = UNMAPPED
         self.pending: dict[str, Pending] = {}
 
     @property
-    def instrument(self) -> Instrument:
-        """The first instrument, which has the record of the part."""
-        return self._instrument
-
-    @property
     def notes(self) -> NoteRange:
         """The notes that the instrument has."""
-        return self._instrument.spec.notes
+        return self.instrument.spec.notes
 
     @property
     def players(self) -> int:
@@ -98,8 +93,8 @@ class PartState:
     @property
     def record(self) -> Any:
         """The part's record (``midi.record.MIDI``), with all that is posted for now."""
-        self._instrument.interpret_events()
-        return self._instrument.midi
+        self.instrument.interpret_events()
+        return self.instrument.midi
 
     @property
     def delay(self) -> int:
@@ -108,12 +103,12 @@ class PartState:
         Constant, and long enough that the frame has not been played yet, so that messages keep
         their rhythm.
         """
-        return self._instrument.delay
+        return self.instrument.delay
 
     def frame_of(self, arrived_ns: int | None = None) -> int:
         """The frame for a message that arrived at this ``time.monotonic_ns()``; by default, now."""
         moment = time.monotonic_ns() if arrived_ns is None else arrived_ns
-        return int(self._instrument.frame_at(moment)) + self.delay
+        return int(self.instrument.frame_at(moment)) + self.delay
 
     # -- parameters --------------------------------------------------------------------------
 
@@ -130,7 +125,7 @@ class PartState:
         if pending is not None:
             return pending.value
         if param.player_controlled:
-            return self._instrument.target(param.address)
+            return self.instrument.target(param.address)
         return float(self.record["value"][INDEX[param.address]])
 
     def values(self) -> dict[str, float]:
@@ -152,18 +147,18 @@ class PartState:
     def _note(
         self, address: str, value: float, frame: int | None, *, is_held: bool = False
     ) -> None:
-        at = self._instrument.frame if frame is None else frame
-        self.pending[address] = Pending(value, self._instrument.posted, at, is_held)
+        at = self.instrument.frame if frame is None else frame
+        self.pending[address] = Pending(value, self.instrument.posted, at, is_held)
 
     def _waiting(self, param: Param) -> Pending | None:
         """The last direct write to a parameter, while the audio side does not have it."""
         pending = self.pending.get(param.address)
         if pending is None:
             return None
-        meters = self._instrument.meters()
+        meters = self.instrument.meters()
         is_done = meters["drained"] > pending.number and meters["next_frame"] > pending.frame
         # An instrument that is not live interprets due events whenever its record is read.
-        is_read = not self._instrument.is_live and pending.frame <= self._instrument.frame
+        is_read = not self.instrument.is_live and pending.frame <= self.instrument.frame
         if is_done or (is_read and not param.player_controlled):
             self.pending.pop(param.address, None)  # another thread may have done so
             return None
@@ -223,7 +218,7 @@ class PartState:
     def plays(self, channel: int) -> bool:
         """Whether the notes of a channel, counted from 0 over all ports, are played."""
         record = self.record
-        tables = self._instrument.tables[record["tables"]]
+        tables = self.instrument.tables[record["tables"]]
         # As Python: compiling it would take longer than a short render.
         return uncompiled(plays)(with_fields(record), with_fields(tables), channel)
 

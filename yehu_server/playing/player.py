@@ -6,7 +6,7 @@ What they come to is decided in compiled code (``midi``, ``player``), at their f
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from collections.abc import Mapping as Values
 from typing import Any, Self
 
@@ -68,19 +68,19 @@ class Player(PartState):
         self.learning = Learning()
         self._lock = threading.RLock()  # held for moments only
         self._latest = 0  # the latest frame of any event
-        self._channels: set[int] | None = None
+        self._channels: Collection[int] | None = None
         self._start: tuple[tuple[str, float], ...] = ()
         self._programs: Values[int, Preset] | None = None
         self._slot = 0  # of the tables that were posted last
         self._has_stale_tables = False
-        self._instrument.begin_part(self.tables(UNMAPPED), len(several))
+        self.instrument.begin_part(self.tables(UNMAPPED), len(several))
         for other in several[1:]:
             other.begin_part(plain_tables(), 0)
 
     def mapped(
         self,
         mapping: Mapping,
-        channels: set[int] | None = None,
+        channels: Collection[int] | None = None,
         *,
         start: Iterable[tuple[str, float]] = (),
         programs: Values[int, Preset] | None = None,
@@ -95,7 +95,7 @@ class Player(PartState):
         self.mapping, self._channels = mapping, channels
         self._start, self._programs = tuple(start), programs
         self._slot = 0
-        self._instrument.set_tables(self._tables())
+        self.instrument.set_tables(self._tables())
         self.post(events.START)
         return self
 
@@ -122,12 +122,12 @@ class Player(PartState):
         """Post an event (``midi.events``); without a frame, for now."""
         with self._lock:
             frame = self._at(frame)
-            self._instrument.post(kind, frame=frame, index=index, value=value, other=other)
+            self.instrument.post(kind, frame=frame, index=index, value=value, other=other)
 
     def _at(self, frame: int | None) -> int | None:
         """Return the frame, and record it as the latest one."""
         if frame is not None:
-            if self._latest > frame + self._instrument.rate:  # the system's clock was set back
+            if self._latest > frame + self.instrument.rate:  # the system's clock was set back
                 self._latest = frame
             self._latest = max(self._latest, frame)
         return frame
@@ -301,11 +301,7 @@ class Player(PartState):
         either is beyond MIDI's range.
         """
         key, other = Key.of(key), within_midi("velocity", velocity) / 127.0
-        with self._lock:
-            frame = self._at(frame)
-            self._instrument.post(
-                events.NOTE_ON, frame=frame, index=key.channel, value=key.note, other=other
-            )
+        self.post(events.NOTE_ON, frame, key.channel, key.note, other)
 
     def key_off(self, key: Key | float, *, frame: int | None = None) -> None:
         """Let a key go, which ends its note unless a pedal keeps it; see `key_on`."""
@@ -355,7 +351,7 @@ class Player(PartState):
         # Where the audio side still uses that slot, `finish_remap` comes back to it.
         self._has_stale_tables = int(self.record["tables"]) == slot
         if not self._has_stale_tables:
-            self._instrument.tables[slot] = self._tables()[0]
+            self.instrument.tables[slot] = self._tables()[0]
             self._slot = slot
             self.post(events.TABLES_TO, frame, slot)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import tomlkit
@@ -18,18 +19,22 @@ from yehu_server.util.files import PLAIN_NAME, inside, read_text, shipped_folder
 ENDING = ".toml"
 MINE = "mine/"  # prefix of the names of the user's own presets
 AND = "+"  # between the names of presets that are taken together
-MOST_TOGETHER = 8
+MAX_TOGETHER = 8
 # Presets are read while the instrument plays, which must take some milliseconds only.
-MOST_OWN = 128  # as many as there are MIDI programs
-MOST_BYTES = 1 << 14  # of one preset; all values take under 1000, the rest is for comments
-MOST_NAMED = 20  # names in an error message
+MAX_OWN = 128  # as many as there are MIDI programs
+MAX_BYTES = 1 << 14  # of one preset; all values take under 1000, the rest is for comments
+MAX_NAMED = 20  # names in an error message
 EMPTY = f'version = {VERSION}\nabout = ""\n\n[values]\n'
-Stamp = tuple[int, int]
 
 
 def read_preset(path: Path, name: str | None = None) -> Preset:
     """Read a preset from a file; raises PresetError, naming the file, or `name`."""
-    return preset_from(document_of(name or path).read(path, MOST_BYTES), name or path.stem)
+    return preset_from(document_of(name or path).read(path, MAX_BYTES), name or path.stem)
+
+
+@lru_cache(maxsize=4 * MAX_OWN)
+def _read_once(path: Path, name: str, _mtime_ns: int, _size: int) -> Preset:
+    return read_preset(path, name)
 
 
 def is_name(name_or_path: str) -> bool:
@@ -64,12 +69,10 @@ class Presets:
         self._own_first = user_first
         self.own = own or user_config_path("yehu-server") / "presets"
         self.shipped = shipped_folder("presets")
-        # The presets read, or why they could not be.
-        self._known: dict[Path, tuple[Stamp, Preset | str]] = {}
 
     def names(self) -> list[str]:
         """All names, sorted."""
-        return sorted({*_names(self.own)[:MOST_OWN], *_names(self.shipped)})
+        return sorted({*_names(self.own)[:MAX_OWN], *_names(self.shipped)})
 
     def is_own(self, name: str) -> bool:
         """Whether the user has a preset of this name."""
@@ -85,8 +88,8 @@ class Presets:
             if _is_there(path):
                 return path
         names = self.names()
-        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-        raise PresetError(f"no preset {name!r} (there are: {', '.join(names[:MOST_NAMED])}{more})")
+        more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
+        raise PresetError(f"no preset {name!r} (there are: {', '.join(names[:MAX_NAMED])}{more})")
 
     def load(self, name: str) -> Preset:
         """Read a preset by its name, or several by names with a plus between them.
@@ -95,8 +98,8 @@ class Presets:
         PresetError where there is no such preset, it is wrong, or they are too many.
         """
         names = name.split(AND)
-        if len(names) > MOST_TOGETHER:
-            raise PresetError(f"{len(names)} presets: at most {MOST_TOGETHER} go together")
+        if len(names) > MAX_TOGETHER:
+            raise PresetError(f"{len(names)} presets: at most {MAX_TOGETHER} go together")
         found = [self._read(self.file(each), each.removeprefix(MINE)) for each in names]
         return found[0] if len(found) == 1 else together(found)
 
@@ -115,9 +118,9 @@ class Presets:
     def all(self) -> tuple[list[Preset], list[PresetError]]:
         """All presets by name, and the errors in files that cannot be read."""
         presets, errors = [], []
-        excess = len(_names(self.own)) - MOST_OWN
+        excess = len(_names(self.own)) - MAX_OWN
         if excess > 0:
-            errors.append(PresetError(f"{self.own}: {excess} more than {MOST_OWN}, left out"))
+            errors.append(PresetError(f"{self.own}: {excess} more than {MAX_OWN}, left out"))
         for name in self.names():
             try:
                 presets.append(self.load(name))
@@ -139,17 +142,17 @@ class Presets:
 
         The rest of an older file of this name (comments, `about`, `program`, other entries) stays,
         and the whole file where writing fails. Raises PresetError where the name is a shipped
-        preset's, an older file cannot be read, there are MOST_OWN already, or writing fails.
+        preset's, an older file cannot be read, there are MAX_OWN already, or writing fails.
         """
         path = self._own_file(name)
         text = EMPTY
         if path.exists():
             read_preset(path, name)
-            text = read_text(path, MOST_BYTES)
+            text = read_text(path, MAX_BYTES)
         elif self._shipped_file(name).exists():
             raise PresetError(f"{name!r} comes with the program; save under another name")
-        elif len(_names(self.own)) >= MOST_OWN:
-            raise PresetError(f"there are {MOST_OWN} presets of your own; delete one first")
+        elif len(_names(self.own)) >= MAX_OWN:
+            raise PresetError(f"there are {MAX_OWN} presets of your own; delete one first")
         try:
             document = tomlkit.parse(text)
         except TOMLKitError as error:
@@ -182,15 +185,8 @@ class Presets:
         try:
             status = path.stat()
         except OSError as error:
-            self._known.pop(path, None)
             raise PresetError(f"{name}: {error.strerror}") from error
-        stamp = (status.st_mtime_ns, status.st_size)
-        known = self._known.get(path)
-        if known is None or known[0] != stamp:
-            known = self._known[path] = (stamp, _tried(path, name))
-        if isinstance(known[1], str):
-            raise PresetError(known[1])
-        return known[1]
+        return _read_once(path, name, status.st_mtime_ns, status.st_size)
 
     def _own_file(self, name: str) -> Path:
         """The path of an own preset; raises PresetError for what is no plain name, as `inside`."""
@@ -212,13 +208,6 @@ def _is_there(path: Path) -> bool:
         return False
     except OSError:  # such as a loop of links
         return True
-
-
-def _tried(path: Path, name: str) -> Preset | str:
-    try:
-        return read_preset(path, name)
-    except PresetError as error:
-        return str(error)
 
 
 def _names(folder: Path) -> list[str]:

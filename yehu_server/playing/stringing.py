@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import OPEN_NOTES, wave_speed
 from yehu_server.core.player.note_range import NoteRange
+from yehu_server.core.player.note_tables import OPEN_NOTES, wave_speed
 from yehu_server.errors import ParameterError
 from yehu_server.playing.pitch_and_level import note_name
 

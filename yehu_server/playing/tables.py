@@ -53,7 +53,7 @@ def make_tables(
     received: Iterable[int] | None = None,
     programs: Mapping[int, Preset] | None = None,
 ) -> Array:
-    """Make the tables of a part.
+    """Make the tables of a part: ndarray [shape=(1,), dtype=TABLES].
 
     `mapping`: with no more binds and points than there is room for, as ``playing.mapping`` reads
     it.
@@ -61,10 +61,6 @@ def make_tables(
     `notes`: those of the instrument.
     `received`: channels to receive, counted from 0; by default all but percussion.
     `programs`: the presets of MIDI programs, from 1. Without it program changes are ignored.
-
-    Returns
-    -------
-    ndarray [shape=(1,), dtype=TABLES]
     """
     made = tables.plain_tables()
     t = made[0]

@@ -44,11 +44,11 @@ KEYS = range(tables.KEYS)
 MIDDLE_C, A4 = 60, 69
 # Hz; the pitches of a tuning that is fixed in Hz are stored relative to this A4.
 STANDARD_A4 = 440.0
-MOST_NOTES = 1024  # in a scale or a map
-MOST_DEGREE = 100_000
+MAX_NOTES = 1024  # in a scale or a map
+MAX_DEGREE = 100_000
 # Bound on the pitch of a key, so that its frequency is a finite number.
-MOST_SEMITONES = 10_000.0
-LEAST_HZ, MOST_HZ = 1e-6, 1e9
+MAX_SEMITONES = 10_000.0
+MIN_HZ, MAX_HZ = 1e-6, 1e9
 
 # Text after a pitch is ignored, unless it could be part of the number.
 _CENTS = re.compile(r"([+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+))(?![0-9./]|,[0-9]|[eE][+-]?[0-9])")
@@ -109,7 +109,7 @@ def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
     keyboard = None if keyboard is None else _found(keyboard, ".kbm")
     lines = _Lines(scale)
     name = lines.title() or scale.stem
-    count = lines.whole("the number of notes", 0, MOST_NOTES)
+    count = lines.whole("the number of notes", 0, MAX_NOTES)
     notes = tuple(_note(lines, f"note {n} of {count}") for n in range(1, count + 1))
     layout = _Keyboard() if keyboard is None else _read_keyboard(keyboard)
     reference = layout.interval(layout.reference, notes)
@@ -122,7 +122,7 @@ def read_tuning(scale: Path, keyboard: Path | None = None) -> Tuning:
         interval = layout.interval(key, notes)
         if interval is not None:
             pitch = above + interval
-            if abs(pitch) > MOST_SEMITONES:
+            if abs(pitch) > MAX_SEMITONES:
                 raise ParameterError(f"{scale}: key {key} would be {pitch:.0f} semitones away")
             keys[key] = pitch
     if all(key is None for key in keys):
@@ -270,7 +270,7 @@ def _note(lines: _Lines, what: str) -> float:
         semitones = 12.0 * (_octaves(over) - _octaves(under))
     else:
         raise lines.error(f"{what}: expected cents or a ratio, got {_quote(line)}")
-    if abs(semitones) > MOST_SEMITONES:
+    if abs(semitones) > MAX_SEMITONES:
         raise lines.error(f"{what}: {_quote(line)} is too far away")
     return semitones
 
@@ -278,7 +278,7 @@ def _note(lines: _Lines, what: str) -> float:
 def _read_keyboard(path: Path) -> _Keyboard:
     lines = _Lines(path)
     lowest, highest = KEYS[0], KEYS[-1]
-    size = lines.whole("the size of the map", 0, MOST_NOTES)
+    size = lines.whole("the size of the map", 0, MAX_NOTES)
     first = lines.whole("the first key", lowest, highest)
     last = lines.whole("the last key", first, highest)
     middle = lines.whole("the middle key", lowest, highest)
@@ -287,18 +287,18 @@ def _read_keyboard(path: Path) -> _Keyboard:
     line = lines.take("the reference frequency")
     if not _FREQUENCY.fullmatch(line):
         raise lines.error(f"expected the reference frequency, got {_quote(line)}")
-    if not LEAST_HZ <= float(line) <= MOST_HZ:
-        bounds = f"{LEAST_HZ:g} to {MOST_HZ:g} Hz"
+    if not MIN_HZ <= float(line) <= MAX_HZ:
+        bounds = f"{MIN_HZ:g} to {MAX_HZ:g} Hz"
         raise lines.error(f"the reference frequency: {_quote(line)} is not within {bounds}")
     pitch = A4 + 12.0 * log2(float(line) / STANDARD_A4)
-    octave = lines.whole("the degree of the octave", 0, MOST_DEGREE)
+    octave = lines.whole("the degree of the octave", 0, MAX_DEGREE)
     degrees: list[int | None] = [None] * size  # unmapped keys at the end may be left out
     for index in range(size):
         entry = lines.next()
         if entry is None:
             break
         if entry not in {"x", "X"}:
-            degrees[index] = lines.check(entry, "a degree of the scale, or x", 0, MOST_DEGREE)
+            degrees[index] = lines.check(entry, "a degree of the scale, or x", 0, MAX_DEGREE)
     return _Keyboard(first, last, middle, reference, reference_line, pitch, octave, tuple(degrees))
 
 

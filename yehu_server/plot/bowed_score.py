@@ -31,7 +31,7 @@ from yehu_server.scores.written.mark_settings import DOWN, UP
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Span, Written
 from yehu_server.scores.written.words import words_of_sign
 
-BARS_A_LINE, MOST_LINES = 4, 60
+BARS_A_LINE, MAX_LINES = 4, 60
 LINE_INCHES, WIDTH = 1.55, 12.0
 INK, BOW, STRING, LOUD = "#1c2733", "#b5402a", "#3b6ea8", "#5a4a6f"
 BOWS = {DOWN: "\N{SQUARE CAP}", UP: "\N{LOGICAL OR}"}
@@ -80,7 +80,7 @@ def write_bowed_score(
         raise ParameterError("the score has no note to draw")
     bars = layout.page_bars(written)
     rows = [range(at, min(at + BARS_A_LINE, len(bars))) for at in range(0, len(bars), BARS_A_LINE)]
-    rows = [row for row in rows if bars[row.start].begin < part.notes[-1].end][:MOST_LINES]
+    rows = [row for row in rows if bars[row.start].begin < part.notes[-1].end][:MAX_LINES]
     drawn = tuple(note for note in part.notes if note.beat < bars[rows[-1].stop - 1].end)
     part = replace(part, notes=drawn)
     parts = (*written.parts[:number], part, *written.parts[number + 1 :])

@@ -14,7 +14,7 @@ from yehu_server.util.files import anything, check_free, check_target, open_regu
 SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
 DPI = 110
 BEGINNING = 4096  # bytes of a file in which it is named
-MOST_TEXT = 120  # characters
+MAX_TEXT = 120  # characters
 
 
 def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
@@ -71,6 +71,6 @@ def write_picture(
             raise OutputError(f"{target}: cannot write: {why(error)}") from error
 
 
-def plain(text: str, most: int = MOST_TEXT) -> str:
+def plain(text: str, most: int = MAX_TEXT) -> str:
     """Text in characters that the font has: others would warn and be drawn as boxes."""
     return one_line(text).encode("latin-1", "replace").decode("latin-1")[:most]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Array = Any
 
-LEAST_PRESSURE = 1e-9  # Pa; silence is not scaled up
+MIN_PRESSURE = 1e-9  # Pa; silence is not scaled up
 
 
 def spectrogram(
@@ -132,16 +132,9 @@ def pitch(
 
 
 def sound_of(sound: Any, sample_rate: float | None = None) -> tuple[Array, float]:
-    """Return the samples and the rate (Hz) of what has a sound.
+    """Return the samples and the rate (Hz) of what has a sound, as of `spectrogram`.
 
-    Parameters
-    ----------
-    sound : Rendering, Simulation or ndarray [shape=(frames,) or (frames, channels)]
-
-    Raises
-    ------
-    ParameterError
-        Where it is no sound, or the rate is missing.
+    Raises ParameterError where it is no sound, or the rate is missing.
     """
     if hasattr(sound, "arrays") and hasattr(sound, "meta"):
         arrays = sound.arrays
@@ -177,7 +170,7 @@ def plot_data_of(
     """Gather what pictures show of a sound; see `sound_of`."""
     samples, rate = sound_of(sound, sample_rate)
     if is_pressure(sound):
-        samples = samples / max(float(np.abs(samples).max(initial=0.0)), LEAST_PRESSURE)
+        samples = samples / max(float(np.abs(samples).max(initial=0.0)), MIN_PRESSURE)
     a4 = float(getattr(sound, "a4", 440.0) if a4 is None else a4)
     data = PlotData(rate, len(samples) / rate, 1, a4, step_s)
     times, pitches = getattr(sound, "asked", (np.zeros(0), np.zeros(0)))

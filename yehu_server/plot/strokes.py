@@ -17,7 +17,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.section_instruments import part_specs
+from yehu_server.playing.parts import part_specs
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import PartPlayer
@@ -30,7 +30,7 @@ from yehu_server.scores.written.performed import performed
 from yehu_server.scores.written.tempo import WrittenClock
 
 BLOCK = 64  # frames between two readings of the bow
-MOST_TURNS = 2  # of a note that are counted: more are a tremolo
+MAX_TURNS = 2  # of a note that are counted: more are a tremolo
 SOONER_S = 1e-6
 
 
@@ -106,4 +106,4 @@ def _directions(part: Part, rate: int, played: Sequence[Played]) -> Iterator[lis
             first.process(samples)
             bows.append(float(rig["player"]["direction"]))
         own = [direction for direction, _ in groupby(bows[begin:end])]
-        yield own if len(own) <= 1 + MOST_TURNS else own[:1]
+        yield own if len(own) <= 1 + MAX_TURNS else own[:1]

@@ -28,9 +28,9 @@ from yehu_server.util.files import (
 )
 
 NAME = "manifest.jsonl"
-MOST_BYTES = 2**30
+MAX_BYTES = 2**30
 HIDDEN = ".yehu-server"
-MOST_RECORD_BYTES = 16 * 2**20
+MAX_RECORD_BYTES = 16 * 2**20
 LONGEST_NAME = 255  # bytes
 CHUNK = 1 << 20
 Record = dict[str, Any]
@@ -61,7 +61,7 @@ def check_manifest(folder: Path) -> None:
     """Check that the manifest may be written. Raises OutputError where the file is another's."""
     path = folder / NAME
     try:
-        first = next(read_lines(path, MOST_BYTES), "")
+        first = next(read_lines(path, MAX_BYTES), "")
         fields = json.loads(first) if first else {"file": ""}
         if "file" in fields and isinstance(fields, dict):
             return
@@ -132,7 +132,7 @@ def up_to_date(
     `results` are the target, and what is wanted beside it.
     """
     try:
-        record = json.loads(read_text(record_of(target), MOST_RECORD_BYTES))
+        record = json.loads(read_text(record_of(target), MAX_RECORD_BYTES))
         line: Record = record["line"]
         made = record["results"]
         wanted = {_beside(target, path): path for path in results}

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import json
 import logging
+import pickle
 import queue
 import re
 import secrets
@@ -24,8 +24,9 @@ from yehu_server.errors import YehuError
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.plain_unpickling import ForeignError, plain_client
 from yehu_server.rendering.workers import Event, Perform
+from yehu_server.util.documents import Document
 from yehu_server.util.extras import need
-from yehu_server.util.files import read_text, why
+from yehu_server.util.values import line
 
 PORT = 8786  # Dask's own choice
 _ADDRESS = re.compile(r"(?:(tcp|tls|ucx|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+)(?::(\d+))?/?")
@@ -53,15 +54,8 @@ def scheduler_address(text: str) -> str:
 
 def _in_file(path: Path) -> str:
     """The address in the file that ``dask scheduler --scheduler-file`` writes."""
-    try:
-        address = json.loads(read_text(path))["address"]
-        if not isinstance(address, str):
-            raise TypeError  # noqa: TRY301 - as where it is no JSON at all
-    except OSError as error:
-        raise YehuError(f"{path}: {why(error)}") from error
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise YehuError(f"{path}: is not the file of a Dask scheduler") from error
-    return scheduler_address(address.removesuffix(".json"))
+    document = Document(path, "the file of a Dask scheduler", YehuError).read(path)
+    return scheduler_address(document.json().need("address", line).removesuffix(".json"))
 
 
 class Cluster:
@@ -82,7 +76,7 @@ class Cluster:
     ) -> None:
         need("distributed", "--dask", "cluster")
         self.address = scheduler_address(address)
-        self._setup, self._warn = cluster_worker.packed_setup(setup), warn
+        self._setup, self._warn = pickle.dumps(setup or cluster_worker.no_setup), warn
         self._client: Any = None
         self._open = contextlib.ExitStack()
         self._code = cluster_worker.identity().code
@@ -151,7 +145,7 @@ class Cluster:
     ) -> list[tuple[int, Any]]:
         """Send some jobs off at once, as cheap as one; return their numbers and futures."""
         jobs = dict(numbered)
-        packs = [cluster_worker.packed(perform, task, self._setup) for task in jobs.values()]
+        packs = [pickle.dumps((perform, task, self._setup)) for task in jobs.values()]
         if not jobs:
             return []
         keys = [f"{name}-{job}" for job in jobs]

@@ -8,13 +8,11 @@ from __future__ import annotations
 import pickle
 import platform
 import threading
-from collections.abc import Callable
 from dataclasses import astuple, dataclass
 from functools import cache
 from typing import Any
 
 from yehu_server.compile import levels
-from yehu_server.rendering.workers import Perform
 from yehu_server.util import PACKAGE, __version__
 from yehu_server.util.processes import machine_lock
 from yehu_server.util.source_key import key_of
@@ -66,7 +64,7 @@ def who() -> tuple[str, str, str]:
 
 
 def do(job: bytes, code: str) -> bytes:
-    """Do a job that was pickled by `packed`, as the same code would elsewhere.
+    """Do a job, a pickled function with its task and setup, as the same code would elsewhere.
 
     Returns a pair, packed: one of `DONE`, `FAILED` and `UNLIKE`; then what its function returned,
     what it raised, or `who` this process is, where it has another code.
@@ -87,15 +85,5 @@ def do(job: bytes, code: str) -> bytes:
         return bytes(msgpack.packb((FAILED, f"{type(error).__name__}: {error}")))
 
 
-def packed(perform: Perform, task: Any, setup: bytes) -> bytes:
-    """A job as bytes, which schedulers pass on as they are."""
-    return pickle.dumps((perform, task, setup))
-
-
 def no_setup() -> None:
     """Prepare nothing."""
-
-
-def packed_setup(setup: Callable[[], object] | None) -> bytes:
-    """What is called in each process before its first job, as bytes."""
-    return pickle.dumps(setup or no_setup)

@@ -8,17 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
-from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import EXPRESS
 from yehu_server.core.player.parameter_indices import BEND, INDEX
 from yehu_server.params.table import find
-from yehu_server.playing.parts import number_of_instruments
-from yehu_server.playing.section_instruments import part_specs
+from yehu_server.playing.parts import assemble, number_of_instruments
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
 from yehu_server.rendering.options import Options, Part
+from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.score import ScoreEvent, Setting, notes_of
 
 END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
@@ -26,7 +24,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 QUIET = 1e-4  # 80 dB below full scale
 QUIET_S = 0.2  # the tail ends after this time of quiet
 LONGEST_TAIL_S = 5.0
-LEAST_AHEAD = 2048  # frames of a block for which another thread costs less than it saves
+MIN_AHEAD = 2048  # frames of a block for which another thread costs less than it saves
 
 
 class PartPlayer:
@@ -111,22 +109,18 @@ class Performance:
     ) -> None:
         self._options, self._has_stems = options, has_stems
         number_of_instruments([part.playing for part in parts])
-        specs: list[InstrumentSpec] = []
-        self._places: list[slice] = []  # of the instruments of each part
-        for part in parts:
-            playing, rate = part.playing, float(options.rate)
-            own = part_specs(playing, rate, playing.calibration(rate), number=len(specs))
-            self._places.append(slice(len(specs), len(specs) + len(own)))
-            specs += own
-        self.ensemble = Ensemble(
-            specs, channels=options.sound_channels, has_room=not options.is_dry
+        rate = float(options.rate)
+        self.ensemble, by_part = assemble(
+            [part.playing for part in parts],
+            rate,
+            [part.playing.calibration(rate) for part in parts],
+            is_live=False,
+            channels=options.sound_channels,
+            has_room=not options.is_dry,
         )
         for instrument in self.ensemble.instruments if reports else ():
             instrument.report_commands()
-        self.players = [
-            PartPlayer(part, self.ensemble.instruments[place])
-            for part, place in zip(parts, self._places, strict=True)
-        ]
+        self.players = [PartPlayer(*each) for each in zip(parts, by_part, strict=True)]
         self.instrument, self.player = self.ensemble.first, self.players[0].player
         duration_s = max(part.score.duration_s for part in parts)
         self.score_frames = self.instrument.frames(duration_s * 1e3)
@@ -135,13 +129,22 @@ class Performance:
         self.stems: list[Samples] = []
         self.target_pitches: list[float | None] = []
 
-    def blocks(self) -> Iterator[Samples]:
+    def blocks(self, progress: ProgressCallback | None = None) -> Iterator[Samples]:
         """Yield the samples of score and tail, relative to full scale.
 
-        They have the shape (frames, 2), or (frames,) where `Options.is_mono`.
+        They have the shape (frames, 2), or (frames,) where `Options.is_mono`. `progress` is called
+        after each with the seconds done and those of the score.
         """
+        done = 0
+        for samples in self._blocks():
+            yield samples
+            done += len(samples)
+            if progress is not None:
+                progress(done / self._options.rate, self.score_frames / self._options.rate)
+
+    def _blocks(self) -> Iterator[Samples]:
         options = self._options
-        is_ahead = options.cores > 1 and options.block >= LEAST_AHEAD
+        is_ahead = options.cores > 1 and options.block >= MIN_AHEAD
         own = min(options.cores, len(self.ensemble.instruments))
         is_in_turn = own == 1 and not is_ahead and not self._has_stems
         with shared(own) as share:
@@ -194,8 +197,9 @@ class Performance:
         is_mono = self._options.is_mono
         if self._has_stems:
             stems = cores.stems.mean(axis=2) if is_mono else cores.stems
-            own = [stems[:, place].sum(axis=1) for place in self._places]
-            self.stems = [stem.astype(np.float32) for stem in (*own, stems[:, -1])]
+            ends = np.cumsum([len(player.instruments) for player in self.players])
+            own = [part.sum(axis=1) for part in np.split(stems, ends, axis=1)]  # the room is last
+            self.stems = [stem.astype(np.float32) for stem in own]
         return out.reshape(-1) if is_mono else out
 
     def _pitches(self) -> list[float | None]:

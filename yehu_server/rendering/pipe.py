@@ -28,27 +28,20 @@ UNKNOWN = struct.pack("<I", 0xFFFFFFFF)
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
-class _PipedWav(WavStream):
-    """Writes a WAV file from beginning to end."""
-
-    def _update_header(self) -> None:
-        pass
-
-    def _cut(self) -> None:
-        pass
-
-    def close(self) -> None:
-        pass
-
-    def _header(self) -> bytes:
-        known = super()._header()
-        return known[:4] + UNKNOWN + known[8:-4] + UNKNOWN
+def _wav_header(rate: int, subtype: str, channels: int) -> bytes:
+    file: Any = io.BytesIO()
+    WavStream(file, rate, subtype, RENDERED, channels=channels)
+    known = file.getvalue()
+    return bytes(known[:4] + UNKNOWN + known[8:-4] + UNKNOWN)
 
 
-class _Raw:
-    def __init__(self, file: io.FileIO, subtype: str, channels: int) -> None:
+class _Stream:
+    """Writes a header, and samples one after another."""
+
+    def __init__(self, file: io.FileIO, header: bytes, subtype: str, channels: int) -> None:
         self.frames = 0
         self._file, self._subtype, self._channels = file, subtype, channels
+        write_all(file, header)
 
     def write(self, samples: Samples) -> None:
         check_shape(samples, self._channels)
@@ -65,18 +58,15 @@ class PipeWriter(SoundWriter):
     def __init__(  # the file's own has a limit, and a header that it writes again
         self, file: io.FileIO, rate: int, format_name: str, subtype: str, channels: int
     ) -> None:  # pylint: disable=super-init-not-called
+        header = b""
         if format_name == "wav":
             check_format(format_name, subtype, channels)
+            header = _wav_header(rate, subtype, channels)
         self._target = Path("standard output")
         self._channels, self._limit = channels, None
         self.frames, self.peak, self._power = 0, 0.0, 0.0
         with self._converting_errors():
-            self._piped: _PipedWav | _Raw
-            if format_name == "wav":
-                self._piped = _PipedWav(file, rate, subtype, RENDERED, channels=channels)
-            else:
-                self._piped = _Raw(file, subtype, channels)
-            self._stream = self._piped  # type: ignore[assignment]
+            self._stream = _Stream(file, header, subtype, channels)  # type: ignore[assignment]
 
     def close(self) -> None:
         """Do nothing: each write was complete."""

@@ -60,6 +60,23 @@ class Summary:
     unknown_programs: tuple[int, ...]  # 1 to 128
     parts: tuple[PartSummary, ...] = ()
 
+    def remarks(self, hint: str = "") -> list[str]:
+        """What was not played as it is written; `hint` follows that of percussion."""
+        percussion, moved = (
+            counted(notes, "note") for notes in (self.percussion_notes, self.notes_out_of_range)
+        )
+        programs = ", ".join(map(str, self.unknown_programs))
+        solves = counted(self.unconverged_solves, "friction solve")
+        lost = counted(self.lost_states, "time")
+        lines = {
+            f"channel 10 is percussion: {percussion} not played{hint}": self.percussion_notes,
+            f"{moved} outside {self.range}, {FATE[self.policy]}": self.notes_out_of_range,
+            f"no preset for the programs {programs}: ignored": programs,
+            f"{solves} did not converge": self.unconverged_solves,
+            f"the state was lost and set to rest: {lost}": self.lost_states,
+        }
+        return [line for line, is_so in lines.items() if is_so]
+
 
 def summary_of(
     performance: Performance, duration_s: float, elapsed_s: float, peak: float, rms: float

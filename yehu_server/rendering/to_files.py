@@ -1,4 +1,4 @@
-"""Render parts: to sound files and stems, or to a capture."""
+"""Render parts: to sound files and stems, scaled to a true peak; or to a capture."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,10 +19,64 @@ from yehu_server.rendering.performance import Performance, Samples
 from yehu_server.rendering.pipe import sound_pipe
 from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
-from yehu_server.rendering.true_peak import TruePeak
+from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.files import anything, why
 from yehu_server.util.sound_file import SoundWriter, sound_file
+
+Array = Any
+
+# The standard's interpolating filter: three values between each two samples.
+_QUARTER = (
+    0.0017089843750, 0.0109863281250, -0.0196533203125, 0.0332031250000, -0.0594482421875,
+    0.1373291015625, 0.9721679687500, -0.1022949218750, 0.0476074218750, -0.0266113281250,
+    0.0148925781250, -0.0083007812500,
+)  # fmt: skip
+_HALF = (
+    -0.0291748046875, 0.0292968750000, -0.0517578125000, 0.0891113281250, -0.1665039062500,
+    0.4650878906250, 0.7797851562500, -0.2003173828125, 0.1015625000000, -0.0582275390625,
+    0.0330810546875, -0.0189208984375,
+)  # fmt: skip
+PHASES = (_QUARTER, _HALF, _HALF[::-1], _QUARTER[::-1])
+TAPS = len(_QUARTER)
+WORST_GAIN = max(sum(map(abs, phase)) for phase in PHASES)
+
+
+class TruePeak:
+    """Finds the largest true peak of a recording that comes in blocks. Source: [BS1770], annex 2.
+
+    It is that of the samples and of three values between each two. Of a block that cannot come up
+    to the largest so far, they are not computed.
+    """
+
+    def __init__(self) -> None:
+        self.peak = 0.0
+        self._before: Array = None
+
+    def add(self, block: Array) -> None:
+        """Take up the next block [shape=(frames,) or (frames, channels)]."""
+        x = np.asarray(block, np.float64).reshape(len(block), -1)
+        if self._before is None:
+            self._before = np.zeros((TAPS - 1, x.shape[1]))
+        x = np.concatenate((self._before, x))
+        self._before = x[len(x) - TAPS + 1 :]
+        for channel in x.T:
+            self._hear(channel)
+
+    def finish(self) -> float:
+        """Return the peak, once all is taken up."""
+        if self._before is not None:
+            self.add(np.zeros((TAPS, self._before.shape[1])))
+        return self.peak
+
+    def _hear(self, x: Array) -> None:
+        highest = float(np.abs(x).max(initial=0.0))
+        self.peak = max(self.peak, highest)
+        if len(x) >= TAPS and highest * WORST_GAIN > self.peak:
+            for phase in PHASES:
+                between = np.convolve(x, phase, "valid")
+                self.peak = max(self.peak, float(np.abs(between).max()))
+
 
 NORMALIZED_PEAK = 0.8912509381337456  # a true peak of -1 dB
 CHUNK = 1 << 18  # bytes that are read again at a time: whole frames
@@ -74,7 +129,7 @@ def render(
     parts: Sequence[Part],
     target: Path,
     options: Options,
-    progress: Callable[[float, float], None] | None = None,
+    progress: ProgressCallback | None = None,
     may_replace: Callable[[Path], bool] = anything,
     stems: Sequence[Path] = (),
     watch: PlotData | None = None,
@@ -101,7 +156,7 @@ def render(
 
     with contextlib.ExitStack() as stack:
         files = [stack.enter_context(opened(path)) for path in (target, *stems)]
-        takes = _takes(performance, len(files), options.rate, progress, watch)
+        takes = _takes(performance, len(files), progress, watch)
         if options.normalize:
             write_normalized(takes, files, None if target is PIPE else target.parent)
         else:
@@ -115,26 +170,21 @@ def render(
 def _takes(
     performance: Performance,
     files: int,
-    rate: int,
-    progress: Callable[[float, float], None] | None,
+    progress: ProgressCallback | None,
     watch: PlotData | None,
 ) -> Iterator[list[Samples]]:
     """Yield what goes to each of the files, block by block."""
-    frames, total = 0, performance.score_frames / rate
-    for samples in performance.blocks():
+    for samples in performance.blocks(progress):
         yield [samples, *performance.stems][:files]
-        frames += len(samples)
         if watch is not None:
             watch.take(samples, performance.target_pitches)
-        if progress is not None:
-            progress(frames / rate, total)
 
 
 def render_capture(
     parts: Sequence[Part],
     target: Path,
     options: Options,
-    progress: Callable[[float, float], None] | None = None,
+    progress: ProgressCallback | None = None,
     *,
     overwrite: bool = False,
 ) -> Performance:
@@ -148,14 +198,10 @@ def render_capture(
     capture = LiveCapture(
         performance.ensemble, target, wrong.append, has_room=not options.is_dry, overwrite=overwrite
     )
-    total, frames = performance.score_frames / options.rate, 0
     try:
-        for samples in performance.blocks():
-            frames += len(samples)
+        for _ in performance.blocks(progress):
             capture.keep_up()
             _check(wrong)
-            if progress is not None:
-                progress(frames / options.rate, total)
     except BaseException:
         capture.discard()
         raise

@@ -25,7 +25,7 @@ from yehu_server.util.signals import on_termination
 
 ProgressCallback = Callable[[float, float], None]  # what is done, and of what
 Perform = Callable[[Any, ProgressCallback], Any]
-MOST_TRIES = 2  # of a job whose process dies
+MAX_TRIES = 2  # of a job whose process dies
 EXIT_WAIT_S = 10.0
 REPORT_EVERY_S = 0.2
 
@@ -106,7 +106,7 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
                     how = worker.end()
                     if job < 0:
                         continue
-                    if tries[job] < MOST_TRIES:
+                    if tries[job] < MAX_TRIES:
                         waiting.appendleft((job, tries[job] + 1))
                     else:
                         yield Event(job, 1.0, died=how)

@@ -30,9 +30,9 @@ from yehu_server.scores.capture_header import SessionStart, read_header
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import read_lines, why
 
-MOST_BYTES = 1 << 30
-MOST_COMMANDS = 20_000_000  # each takes 48 bytes
-MOST_RESTS = 1000
+MAX_BYTES = 1 << 30
+MAX_COMMANDS = 20_000_000  # each takes 48 bytes
+MAX_RESTS = 1000
 ROW = np.dtype([("command", COMMAND), ("player", np.int64)])
 
 
@@ -45,9 +45,7 @@ class Capture:
     version: int = VERSION
     commands: Any = field(default_factory=lambda: np.zeros(0, COMMAND))  # by frame
     players: Any = field(default_factory=lambda: np.zeros(0, np.int64))  # of each command, from 0
-    gaps: dict[int, int] = field(
-        default_factory=dict
-    )  # frame of each rest, and since when it was silent
+    gaps: dict[int, int] = field(default_factory=dict)  # frame of each rest: since when silent
     end: int | None = None  # number of frames
     lost: int = 0  # commands that were not captured
     warnings: list[str] = field(default_factory=list)
@@ -67,7 +65,7 @@ class Capture:
 
 def read_capture(path: Path) -> Capture:
     """Read a capture, also one that a crash has cut short. Raises ScoreError where it is none."""
-    lines = read_lines(path, MOST_BYTES)
+    lines = read_lines(path, MAX_BYTES)
     try:
         capture = _header(path, next(lines, ""))
         rows = np.fromiter(_rows(path, lines, capture), ROW)
@@ -97,8 +95,8 @@ def _rows(path: Path, lines: Iterator[str], capture: Capture) -> Iterator[tuple[
         if row is not None:
             yield row
             count += 1
-            if count > MOST_COMMANDS:
-                raise ScoreError(f"{path}: has more than {MOST_COMMANDS} events")
+            if count > MAX_COMMANDS:
+                raise ScoreError(f"{path}: has more than {MAX_COMMANDS} events")
 
 
 _WRONG = (
@@ -133,7 +131,7 @@ def _row(entry: Any, capture: Capture) -> tuple[CommandRow, int] | None:
     elif "rest" in entry:
         rest, since = frames_of(entry["rest"]), frames_of(entry["since"])
         capture.gaps[rest] = since
-        if since > rest or len(capture.gaps) > MOST_RESTS:
+        if since > rest or len(capture.gaps) > MAX_RESTS:
             raise ValueError("a rest before its beginning, or too many of them")
     elif "lost" in entry:
         capture.lost += frames_of(entry["events"])

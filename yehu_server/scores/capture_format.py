@@ -15,9 +15,9 @@ from yehu_server.params.table import ENGINE, SLOT, TABLE
 from yehu_server.util import __version__
 
 FORMAT, VERSION = "yehu-server capture", 3
-MOST_FRAMES = 1 << 53
-MOST_MS = 3.6e6
-MOST_CHANNELS = 1 << 20
+MAX_FRAMES = 1 << 53
+MAX_MS = 3.6e6
+MAX_CHANNELS = 1 << 20
 HIGHEST_KEY = 127.0
 SILENCED = "silence"
 ADDRESSES = {slot: address for address, slot in SLOT.items()} | {SILENCE: SILENCED}
@@ -70,12 +70,12 @@ def from_line(line: list[Any]) -> CommandRow:
     if kind in (commands.WRITE, commands.HOLD):
         address, number, glide_ms = values
         index, value = _setting(address, number)
-        other = _within(glide_ms, 0.0, MOST_MS)
+        other = _within(glide_ms, 0.0, MAX_MS)
     elif kind == commands.EXPRESS:
         index, value = _setting(*values)
     elif kind in (commands.BEGIN, commands.END):
         channel, key, last = values
-        index = _whole(channel, -MOST_CHANNELS, MOST_CHANNELS)  # below 0: no MIDI channel
+        index = _whole(channel, -MAX_CHANNELS, MAX_CHANNELS)  # below 0: no MIDI channel
         value = _within(key, 0.0, HIGHEST_KEY)
         is_key = kind == commands.BEGIN
         other = _within(last, 0.0, HIGHEST_KEY) if is_key else float(_whole(last, 0, 1))
@@ -107,7 +107,7 @@ def player_of(number: Any, players: int) -> int:
 
 def frames_of(value: Any) -> int:
     """A number of frames, or another count; raises ValueError."""
-    return _whole(value, 0, MOST_FRAMES)
+    return _whole(value, 0, MAX_FRAMES)
 
 
 def _whole(value: Any, lo: int, hi: int) -> int:

@@ -21,12 +21,12 @@ from yehu_server.core.physics.quantities import (
     override,
 )
 from yehu_server.core.player.bowing import NOTES, default_bowing_table
-from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
+from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import find
 from yehu_server.playing.calibration_store import read_measured
-from yehu_server.scores.capture_format import FORMAT, MOST_FRAMES, VERSION, build
+from yehu_server.scores.capture_format import FORMAT, MAX_FRAMES, VERSION, build
 from yehu_server.scores.gesture import sample_rate
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import brief, choice, flag, number, whole
@@ -139,18 +139,18 @@ def _start(
     return InstrumentSpec(
         rate,
         quantities,
-        seed=table.need("seed", whole, 0, MOST_FRAMES),
+        seed=table.need("seed", whole, 0, MAX_FRAMES),
         open_strings=OpenStrings(
             table.need("open_strings", choice, [each.value for each in OpenStrings])
         ),
         calibration=table.need("calibration", _calibration, before),
         bowing=table.need("bowing", _bowing, before),
         start_values=table.need("values", _values),
-        body=table.read("body", whole, 0, 0, MOST_FRAMES),
+        body=table.read("body", whole, 0, 0, MAX_FRAMES),
     )
 
 
-def _calibration(data: Any, before: Sequence[InstrumentSpec]) -> Calibration | None:
+def _calibration(data: Any, before: Sequence[InstrumentSpec]) -> NoteTables | None:
     if data is None:
         return None
     if type(data) is int:

@@ -95,23 +95,23 @@ class LiveCapture:
         self._unreported = 0
         self.is_whole = True
 
-    def keep_up(self) -> None:
+    def keep_up(self, *, is_last: bool = False) -> None:
         """Write the commands that were applied since the last call."""
-        if self._writer is not None:
-            try:
-                self._write(self._writer)
-            except OutputError as error:
-                self._end(error)
+        if self._writer is None:
+            return
+        try:
+            self._write(self._writer)
+            if is_last:
+                self._writer.close(self._ensemble.frame)
+        except OutputError as error:
+            self._writer = None
+            self.is_whole = False
+            self._on_message(f"capture ended: {error}; what was written is kept")
 
     def close(self) -> None:
         """Write the last commands, and end the capture after the last frame played."""
-        self.keep_up()
-        writer, self._writer = self._writer, None
-        if writer is not None:
-            try:
-                writer.close(self._ensemble.frame)
-            except OutputError as error:
-                self._end(error)
+        self.keep_up(is_last=True)
+        self._writer = None
 
     def discard(self) -> None:
         """End the capture and remove its file."""
@@ -131,8 +131,3 @@ class LiveCapture:
             frame = int(self._ensemble.meters()["frame"])
             writer.note("lost", frame, events=unreported - self._unreported)
             self._unreported = unreported
-
-    def _end(self, error: OutputError) -> None:
-        self._writer = None
-        self.is_whole = False
-        self._on_message(f"capture ended: {error}; what was written is kept")

@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
 from yehu_server.scores.octaves import NoteSpan, octaves_of
-from yehu_server.scores.phrases import REST_S
-from yehu_server.scores.score import Score, ScorePart, notes_of
-from yehu_server.scores.smf.tunings import RPN_FINE, transposed_keys
+from yehu_server.scores.score import REST_S, Score, ScoreNote, ScorePart, notes_of
+from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
-from yehu_server.scores.written.notated import Written
+from yehu_server.scores.written.notated import Written, listed
 
-MOST_NAMED = 8  # parts in a line
-MPE_CONFIGURATION = 6
+MAX_NAMED = 8  # parts in a line
 ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
 
 
@@ -35,20 +34,14 @@ def numbers_of(names: Sequence[str], asked: Sequence[str]) -> list[int]:
             same = [int(word[:6]) - 1]
         chosen = same or begun
         if not chosen:
-            more = did_you_mean(text, names) or f"; it has {listed(names)}"
+            more = did_you_mean(text, names) or f"; it has {listed(names, MAX_NAMED)}"
             raise ScoreError(f"has no part {text}{more}")
         if len(chosen) > 1:
-            raise ScoreError(f"part {text} may be {listed([names[at] for at in chosen])}")
+            raise ScoreError(
+                f"part {text} may be {listed([names[at] for at in chosen], MAX_NAMED)}"
+            )
         found.add(chosen[0])
     return sorted(found)
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names for a line: the first of them, and the number of others."""
-    shown = [*names[:MOST_NAMED]]
-    if len(names) > MOST_NAMED:
-        shown.append(f"{len(names) - MOST_NAMED} others")
-    return ", ".join(shown)
 
 
 def says_mpe(score: Score) -> bool:
@@ -68,14 +61,14 @@ def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
     names = [part.name for part in score.parts]
     parts: list[list[NoteSpan]] = [[] for _ in names]
     for note in notes_of(score):
-        at = _number_of(score.parts, note.channel, score.events[note.begins].track)
+        at = index_of(score.parts, note.channel, score.events[note.begins].track)
         if at is not None:
             parts[at].append(NoteSpan(note.start_s, note.end_s, (float(note.key),)))
     tune = melodic_part(names, parts, within)
     if tune is None or take_turns(parts):
         return score
     others = [name for at, name in enumerate(names) if at != tune]
-    line = f"plays {names[tune]}; also there: {listed(others)} ({ONE_BY_ONE})"
+    line = f"plays {names[tune]}; also there: {listed(others, MAX_NAMED)} ({ONE_BY_ONE})"
     return replace(_only(score, [score.parts[tune]]), remarks=(*score.remarks, line))
 
 
@@ -85,8 +78,8 @@ def others_line(written: Written, plays: Sequence[int]) -> str:
     others = [names[at] for at, part in enumerate(written.parts) if part.notes and at not in plays]
     if not others:
         return ""
-    played = listed([names[at] for at in plays])
-    return f"plays {played}; also there: {listed(others)} ({ONE_BY_ONE})"
+    played = listed([names[at] for at in plays], MAX_NAMED)
+    return f"plays {played}; also there: {listed(others, MAX_NAMED)} ({ONE_BY_ONE})"
 
 
 def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
@@ -97,15 +90,13 @@ def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
 
 def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
     """A score with the notes of some of its parts alone."""
-    heard = {(part.channel, part.track) for part in kept}
-    events = []
-    for event in score.events:
-        message = event.message
-        if message.type == "note_on" and message.velocity > 0:
-            places = {(message.channel, None), (None, event.track), (message.channel, event.track)}
-            if heard.isdisjoint(places):
-                continue
-        events.append(event)
+    events = (
+        event
+        for event in score.events
+        if event.message.type != "note_on"
+        or event.message.velocity == 0
+        or index_of(kept, event.message.channel, event.track) is not None
+    )
     return replace(score, events=tuple(events), parts=tuple(kept))
 
 
@@ -115,54 +106,38 @@ def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Sc
     With `is_mpe` the notes of a part are on channels of their own, and all are one part. The range
     is that of `within`.
     """
-    notes = notes_of(score)
     transposed = transposed_keys(score)
-    by_part: dict[str, list[int]] = {}
-    for number, note in enumerate(notes):
-        track = score.events[note.begins].track
-        name = "" if is_mpe else _name(score.parts, note.channel, track)
-        by_part.setdefault(name, []).append(number)
+    by_part: dict[str, list[ScoreNote]] = {}
+    for note in notes_of(score):
+        at = index_of(score.parts, note.channel, score.events[note.begins].track)
+        own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
+        by_part.setdefault("" if is_mpe else own_name, []).append(note)
     moves: dict[int, int] = {}  # of events, in semitones
     parts = []
-    for name, numbers in by_part.items():
-        own = [notes[number] for number in numbers]
-        octaves = octaves_of(
-            [
-                NoteSpan(note.start_s, note.end_s, (note.key + transposed.get(note.begins, 0.0),))
-                for note in own
-            ],
-            REST_S,
-            within,
-        )
+    for name, own in by_part.items():
+        pitches = [note.key + transposed.get(note.begins, 0.0) for note in own]
+        spans = [NoteSpan(n.start_s, n.end_s, (p,)) for n, p in zip(own, pitches, strict=True)]
+        octaves = octaves_of(spans, REST_S, within)
         if octaves.summary:
             parts.append((name, octaves.summary))
         for note, by in zip(own, octaves.of_notes, strict=True):
-            if 0 <= note.key + 12 * by <= 127:
+            if by and 0 <= note.key + 12 * by <= 127:
                 moves[note.begins] = 12 * by
                 end = score.events[note.ends].message  # a note-off, or the key struck again
                 if note.ends >= 0 and (end.type == "note_off" or end.velocity == 0):
                     moves[note.ends] = 12 * by
-    if not any(moves.values()):
+    if not moves:
         return score
-    events = []
-    for number, event in enumerate(score.events):
-        by = moves.get(number, 0)
-        if by:
-            message = event.message.copy(note=event.message.note + by)
-            events.append(replace(event, message=message))
-        else:
-            events.append(event)
+    events = list(score.events)
+    for number, by in moves.items():
+        message = events[number].message
+        events[number] = replace(events[number], message=message.copy(note=message.note + by))
     line = line_of([("" if len(by_part) == 1 else name, how) for name, how in parts], within)
-    remarks = (*score.remarks, *filter(None, (line.replace(":  ", ": "),)))
+    remarks = (*score.remarks, *filter(None, (line,)))
     return replace(score, events=tuple(events), remarks=remarks)
 
 
-def _name(parts: Sequence[ScorePart], channel: int, track: int) -> str:
-    at = _number_of(parts, channel, track)
-    return f"channel {channel + 1}" if at is None else parts[at].name
-
-
-def _number_of(parts: Sequence[ScorePart], channel: int, track: int) -> int | None:
+def index_of(parts: Sequence[ScorePart], channel: int, track: int) -> int | None:
     """The number, from 0, of the part that has what a channel plays in a track."""
     for at, part in enumerate(parts):
         if part.channel in (channel, None) and part.track in (track, None):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics import layout
-from yehu_server.core.physics.grid import LOWEST_RATE, check_rate
+from yehu_server.core.physics.grid import LOWEST_RATE
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.util.documents import Document, Fields
@@ -22,7 +22,7 @@ Curve = tuple[tuple[float, float], ...]
 
 HIGHEST_RATE = 1e6  # Hz, of the model alone, to see how it converges; players end at 192 kHz
 MAX_DURATION_S = 3600.0
-MOST_BYTES = 16 * 2**20
+MAX_BYTES = 16 * 2**20
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def read_gesture(path: Path, instrument: Path | None = None) -> Gesture:
     Raises ScoreError where it cannot be read or is not JSON; ParameterError where an entry is
     wrong.
     """
-    document = Document(path, "a gesture file", unreadable=ScoreError).read(path, MOST_BYTES)
+    document = Document(path, "a gesture file", unreadable=ScoreError).read(path, MAX_BYTES)
     table = document.json()
     return gesture_from(Fields(on_instrument(table.data, instrument), document), path.parent)
 
@@ -139,8 +139,10 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
     shortest = min(string.L for string in quantities.strings)
     for name in ("bow_position", "finger_position"):
         with controls.at(name):
-            curve = curves.get(name, ((0.0, CONTROLS[name].default),))
-            _check_within(curve, quantities.bridge_x)
+            for _, position in curves.get(name, ((0.0, CONTROLS[name].default),)):
+                if not 0.0 < position < quantities.bridge_x:
+                    bridge = f"the bridge ({quantities.bridge_x} m)"
+                    raise ParameterError(f"{position} m is not between the loop (0) and {bridge}")
     has_pluck, has_hammer = (table.data.get(name) is not None for name in ("pluck", "hammer"))
     pluck = _pluck(table.table("pluck"), quantities.bridge_x, shortest) if has_pluck else None
     hammer: Curve = ()
@@ -153,13 +155,6 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
 def sample_rate(value: Any) -> float:
     """A sample rate (Hz) that the model runs at; raises ParameterError."""
     return number(value, LOWEST_RATE, HIGHEST_RATE, "Hz")
-
-
-def played_rate(value: Any) -> float:
-    """A sample rate (Hz) that a tuned instrument plays at; raises ParameterError."""
-    rate = number(value)
-    check_rate(rate)
-    return rate
 
 
 def _pluck(table: Fields, bridge: float, shortest: float) -> Pluck:
@@ -192,11 +187,3 @@ def _curve(value: Any, lo: float, hi: float, unit: str) -> Curve:
         points.append((time, level))
         last = time
     return tuple(points)
-
-
-def _check_within(curve: Curve, bridge: float) -> None:
-    for _, position in curve:
-        if not 0.0 < position < bridge:
-            raise ParameterError(
-                f"{position} m is not between the loop (0) and the bridge ({bridge} m)"
-            )

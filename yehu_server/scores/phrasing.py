@@ -15,9 +15,8 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.scores.phrases import phrases_of
 from yehu_server.scores.rubato import delayed
-from yehu_server.scores.score import Score, ScoreNote, notes_of
+from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of
 from yehu_server.scores.slides import with_slides
 
 PHRASING = 0.5  # of files, where nothing else is asked for
@@ -31,11 +30,11 @@ MARKED_SPAN = 12  # between the softest and the loudest
 # In steps of velocity at full phrasing: from the ends of a phrase to its middle, and on the beats;
 # for each semitone above the mean pitch of all, and at most.
 ARCH, DOWNBEAT, HALF_BAR, BEAT = 100.0, 12.0, 7.0, 4.0
-HIGHER, MOST_HIGHER = 6.0, 50.0
+HIGHER, MAX_HIGHER = 6.0, 50.0
 BETWEEN_MARKS = 0.4  # so much of arches and accents, between the marks of a page: 3 dB by default
 # Notes in one bow: so many, each no longer, in steps no wider (semitones), nothing between them.
-MOST_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
-LEAST_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow
+MAX_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
+MIN_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow
 OVERLAP_S = 0.012  # of slurred notes
 # Between phrases the bow leaves the string, at full phrasing for so long, or this share of the note
 # that ends one, which lasts so long at least.
@@ -70,7 +69,7 @@ def _phrased(score: Score, amount: float, playing: PlayingOptions) -> Score:
             for phrase in phrases:
                 velocities.update(shaped(phrase, score, depth, mean_key, is_marked=is_marked))
         is_free = not is_bowed(notes, controllers)
-        if amount >= LEAST_FOR_BOWS and is_free:
+        if amount >= MIN_FOR_BOWS and is_free:
             for phrase in phrases:
                 ends_s.update(slurred(phrase))
         if score.is_written or is_free:
@@ -121,7 +120,7 @@ def shaped(
         middle = sum(arch) / len(arch)
         for note, height in zip(notes, arch, strict=True):
             higher = 0.0 if is_marked else HIGHER * (note.key - mean_key)
-            higher = min(max(higher, -MOST_HIGHER), MOST_HIGHER)
+            higher = min(max(higher, -MAX_HIGHER), MAX_HIGHER)
             change = amount * (ARCH * (height - middle) + accent(note.beat, score) + higher)
             velocities[note.begins] = min(max(round(note.velocity + change), 1), 127)
     return velocities
@@ -151,7 +150,7 @@ def slurred(phrase: Sequence[ScoreNote]) -> dict[int, float]:
             and after.length_s <= SHORT_S
             and 0 < abs(after.key - note.key) <= STEP
             and _share_a_beat(note, after)
-            and in_bow < MOST_IN_A_BOW
+            and in_bow < MAX_IN_A_BOW
             and note.ends >= 0
         )
         in_bow = in_bow + 1 if goes_on else 1

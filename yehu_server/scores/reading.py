@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from pkgutil import resolve_name
 
 from yehu_server.core.midi.channels import PERCUSSION
 from yehu_server.core.player.note_range import YEHU, NoteRange
@@ -16,8 +17,8 @@ from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
-from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.smf.track import DamagedError
 from yehu_server.scores.written.in_range import default_parts, moved
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import leading_notes, performed
@@ -59,21 +60,15 @@ def part_of(score: Score, channel: int | None = None, track: int | None = None) 
     Messages for all, such as a reset, are in each part. Controllers that a file has in a track
     without notes belong to all tracks that play on their channel.
     """
-    keeps: list[Callable[[ScoreEvent], bool]] = []
-    if channel is not None:
-        keeps.append(lambda event: _channel(event) in (channel, None))
-    if track is not None:
-        silent = {event.track for event in score.events} - {e.track for e in _notes([score])}
-        on = {_channel(event) for event in _notes([score]) if event.track == track}
-        keeps.append(
-            lambda event: (
-                event.track == track
-                or _channel(event) is None
-                or (event.track in silent and _channel(event) in on)
-            )
-        )
-    events = (event for event in score.events if all(keep(event) for keep in keeps))
-    return replace(score, events=tuple(events))
+    sounding = {event.track for event in _notes([score])}
+    on = {_channel(event) for event in _notes([score]) if event.track == track}
+
+    def is_kept(event: ScoreEvent) -> bool:
+        own = _channel(event)
+        is_in_track = event.track == track or (event.track not in sounding and own in on)
+        return own is None or (channel in (own, None) and (track is None or is_in_track))
+
+    return replace(score, events=tuple(filter(is_kept, score.events)))
 
 
 def has_notes(scores: Sequence[Score]) -> bool:
@@ -97,12 +92,13 @@ MUSICXML = (".musicxml", ".xml", ".mxl")
 JIANPU = (".jianpu", ".jpu", ".jp", ".txt")
 ERSIPU = (".ersipu", ".ersi")
 ABC = (".abc",)
-ABC_BEGINNINGS = (b"X:", b"%abc")
 MUSESCORE = (".mscz", ".mscx")
-HUMDRUM = (".krn",)
 WRITTEN = (*MUSICXML, *JIANPU, *ERSIPU, *ABC, *MUSESCORE)
-MIDI_BEGINNINGS = (b"MThd", b"RIFF")
-XML = b"<"
+READERS = {  # but for ABC, which has several songs
+    "jianpu": "yehu_server.scores.jianpu.reader:read_jianpu",
+    "musescore": "yehu_server.scores.musicxml.musescore:read_musescore",
+    "musicxml": "yehu_server.scores.musicxml.reader:read_musicxml",
+}
 BYTE_ORDER_MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 
 
@@ -205,47 +201,41 @@ def read_written(path: Path, song: int | None = None) -> Written:
 
     Raises ScoreError, one line naming the file, where it cannot be read or is none of these.
     """
-    kind = path.suffix.lower()
-    is_abc = kind in ABC or _beginning(path).startswith(ABC_BEGINNINGS)
-    if song not in (None, 1) and not is_abc:
+    form = _format_of(path)
+    if song not in (None, 1) and form != "abc":
         raise ScoreError(f"{one_line(str(path))}: has 1 song")
-    if kind in (*JIANPU, *ERSIPU):
-        from yehu_server.scores.jianpu.reader import read_jianpu
-
-        return read_jianpu(path)
-    if kind in MUSICXML or (kind not in MUSESCORE and _is_xml(_beginning(path))):
-        from yehu_server.scores.musicxml.reader import read_musicxml
-
-        return read_musicxml(path)
-    if is_abc:
+    if form == "abc":
         from yehu_server.scores.abc.reader import read_abc
 
         return read_abc(path, song)
-    if kind in MUSESCORE:
-        from yehu_server.scores.musicxml.musescore import read_musescore
-
-        return read_musescore(path)
-    if kind in HUMDRUM or _beginning(path).startswith((b"**", b"!!!")):
-        raise ScoreError(
-            f"{one_line(str(path))}: is humdrum (**kern), which is not read; "
-            "convert it to MusicXML, as Verovio and music21 do"
-        )
-    endings = ", ".join(WRITTEN)
-    raise ScoreError(
-        f"{one_line(str(path))}: is no written score: it is no XML, nor named {endings}"
-    )
+    if form in READERS:
+        read: Callable[[Path], Written] = resolve_name(READERS[form])
+        return read(path)
+    reason = f"is no written score: it is no XML, nor named {', '.join(WRITTEN)}"
+    if form == "humdrum":
+        reason = "is humdrum (**kern), which is not read; convert it to MusicXML, as Verovio does"
+    raise ScoreError(f"{one_line(str(path))}: {reason}")
 
 
 def is_written(path: Path) -> bool:
     """Whether a file is a written score, and not a MIDI file; its bytes go before its name."""
-    data = _beginning(path)
-    if data.startswith(MIDI_BEGINNINGS):
-        return False
-    kind = path.suffix.lower()
-    named = kind in (*WRITTEN, *HUMDRUM)
-    return named or (
-        kind not in MIDI and (_is_xml(data) or data.startswith((*ABC_BEGINNINGS, b"**", b"!!!")))
-    )
+    return _format_of(path) not in ("midi", "")
+
+
+def _format_of(path: Path) -> str:
+    """The format of a score by its first bytes and its ending; empty for others."""
+    data, ending = _beginning(path), path.suffix.lower()
+    if data.startswith((b"MThd", b"RIFF")) or ending in MIDI:
+        return "midi"
+    if ending in (*JIANPU, *ERSIPU):
+        return "jianpu"
+    if ending in MUSICXML or (ending not in MUSESCORE and _is_xml(data)):
+        return "musicxml"
+    if ending in ABC or data.startswith((b"X:", b"%abc")):
+        return "abc"
+    if ending in MUSESCORE:
+        return "musescore"
+    return "humdrum" if ending == ".krn" or data.startswith((b"**", b"!!!")) else ""
 
 
 def is_capture(path: Path) -> bool:
@@ -265,4 +255,4 @@ def _is_xml(data: bytes) -> bool:
     """Whether the beginning of a file is that of XML, in any encoding."""
     for mark in BYTE_ORDER_MARKS:
         data = data.removeprefix(mark)
-    return data.replace(b"\0", b"").lstrip().startswith(XML)
+    return data.replace(b"\0", b"").lstrip().startswith(b"<")

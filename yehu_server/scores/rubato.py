@@ -14,13 +14,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 from yehu_server.core.midi.channels import PERCUSSION
-from yehu_server.scores.phrases import phrases_of
-from yehu_server.scores.score import Score, ScoreNote, notes_of
+from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of
 
 # At full rubato: a beat at either end of a phrase is two thirds of this longer, one in its middle a
 # third shorter.
 ARCH = 0.08
-LEAST_NOTES, LEAST_S, POINTS = 4, 1.5, 16  # of a phrase with an arch; lines that this is made of
+MIN_NOTES, MIN_S, POINTS = 4, 1.5, 16  # of a phrase with an arch; lines that this is made of
 # The last beats before the last note are up to so much longer; so is that, for a beat at most.
 LAST, LAST_BEATS = 0.2, 2.0
 # A file is in time where nearly all onsets are on a grid: the parts of a quarter, and how near.
@@ -58,16 +57,12 @@ def delays_of(notes: Sequence[ScoreNote]) -> Delays:
     points: list[tuple[float, float]] = []
     for phrase in phrases_of(notes):
         begin, length = phrase[0].start_s, phrase[-1].end_s - phrase[0].start_s
-        if len(phrase) < LEAST_NOTES or length < LEAST_S:
+        if len(phrase) < MIN_NOTES or length < MIN_S:
             continue
         for step in range(POINTS + 1):
             to_end = 2.0 * step / POINTS - 1.0  # the integral of the square less a third
-            points.append(
-                (
-                    begin + length * step / POINTS,
-                    ARCH * length * to_end * (to_end * to_end - 1.0) / 6,
-                )
-            )
+            delay = ARCH * length * to_end * (to_end * to_end - 1.0) / 6
+            points.append((begin + length * step / POINTS, delay))
     return _with_end(notes, points)
 
 
@@ -76,7 +71,7 @@ def _with_end(notes: Sequence[ScoreNote], points: list[tuple[float, float]]) -> 
     close = [note for note in notes if note.beat > notes[-1].beat - 2.0 * LAST_BEATS - NEAR]
     tempi = _tempi(close)
     is_steady = bool(tempi) and 0.0 < max(tempi) <= (1.0 + SAME_TEMPO) * min(tempi)
-    if not is_steady or len(notes) < LEAST_NOTES:
+    if not is_steady or len(notes) < MIN_NOTES:
         return tuple(points)
     last, quarter_s = notes[-1], tempi[-1]
     begin = last.start_s - LAST_BEATS * quarter_s

@@ -6,7 +6,8 @@ import contextlib
 import errno
 import math
 import os
-from collections.abc import Iterator, Sequence
+from bisect import insort
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
@@ -19,6 +20,7 @@ from yehu_server.util.files import read_bytes, why
 
 MAX_DURATION_H = 2.0  # of all that is played, where no other is asked for
 LONGEST_DURATION_H = 1000.0  # that may be asked for
+MAX_SHOWN = 40  # characters of words of a score
 
 
 def check_duration(seconds: float, max_duration_h: float, what: str = "the score lasts") -> None:
@@ -37,6 +39,12 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
         yield
     except ScoreError as error:
         raise type(error)(f"{one_line(os.fspath(path))}: {error}") from None
+
+
+def printable(text: str) -> str:
+    """Words of a score for a message: short, and of one line."""
+    line = one_line(text.strip())
+    return line if len(line) <= MAX_SHOWN else f"{line[:MAX_SHOWN]}..."
 
 
 def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:
@@ -213,7 +221,7 @@ def notes_of(score: Score) -> list[ScoreNote]:
     A key that is struck again ends its note, as the instrument has it.
     """
     held: dict[tuple[int, int], int] = {}
-    ends: dict[int, int] = {}
+    ends: dict[int, int] = {}  # by the number of a note-on
     for number, event in enumerate(score.events):
         message = event.message
         if message.type not in ("note_on", "note_off"):
@@ -223,12 +231,39 @@ def notes_of(score: Score) -> list[ScoreNote]:
             ends[held.pop(key)] = number
         if message.type == "note_on" and message.velocity > 0:
             held[key] = number
+            ends[number] = -1
     found = []
-    for number, event in enumerate(score.events):
-        message = event.message
-        if message.type == "note_on" and message.velocity > 0:
-            end = ends.get(number, -1)
-            end_s = score.events[end].time_s if end >= 0 else score.duration_s
-            at = (message.channel, message.note, message.velocity)
-            found.append(ScoreNote(number, end, *at, event.time_s, end_s, event.beat))
+    for number, end in ends.items():
+        event, message = score.events[number], score.events[number].message
+        end_s = score.events[end].time_s if end >= 0 else score.duration_s
+        at = (message.channel, message.note, message.velocity)
+        found.append(ScoreNote(number, end, *at, event.time_s, end_s, event.beat))
     return found
+
+
+# A phrase ends with a rest, with a note that lasts much longer than those about it, or when it is
+# this long.
+REST_S, LONG_NOTE, LONGEST_PHRASE_BEATS = 0.3, 2.5, 16.0
+
+
+def phrases_of(notes: Iterable[ScoreNote]) -> list[list[ScoreNote]]:
+    """Divide the notes of one voice into phrases."""
+    phrases: list[list[ScoreNote]] = []
+    lengths: list[float] = []  # of the last phrase, sorted
+    for note in notes:
+        if not phrases or _ends_before(phrases[-1], lengths, note):
+            phrases.append([])
+            lengths = []
+        phrases[-1].append(note)
+        insort(lengths, note.length_s)
+    return phrases
+
+
+def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote) -> bool:
+    last = phrase[-1]
+    if note.start_s - last.end_s >= REST_S:
+        return True
+    if note.beat - phrase[0].beat >= LONGEST_PHRASE_BEATS:
+        return True
+    median_s = lengths[len(lengths) // 2]
+    return len(phrase) > 3 and last.length_s > LONG_NOTE * median_s

@@ -21,8 +21,9 @@ from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, STOP
 from yehu_server.core.player.parameter_indices import VELOCITY
 from yehu_server.errors import ScoreError
+from yehu_server.playing.sources import RESERVED
 from yehu_server.scores.capture import Capture, read_capture
-from yehu_server.scores.chosen_parts import says_mpe
+from yehu_server.scores.chosen_parts import index_of, says_mpe
 from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
 from yehu_server.scores.score import (
@@ -55,7 +56,7 @@ TEMPI = range(60, 181)  # quarters a minute, candidates for the tempo of a captu
 OFF_BEAT, UNUSUAL = 0.03, 0.02
 SAME_TEMPO = 0.01  # share
 LEFT_OUT = {"pitchwheel": "pitch bends", "aftertouch": "pressure", "polytouch": "pressure"}
-SELECTING = {0, 6, 32, 38, *range(96, 102), *range(120, 128)}  # of banks, parameters, modes
+SELECTING = {0, 32, *RESERVED}  # of banks, parameters, modes
 
 
 @dataclass(frozen=True)
@@ -98,10 +99,7 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
     voices: list[tuple[str, list[PlayedNote]]] = [(part.name, []) for part in names]
     for note in notes:
         track = score.events[note.begins].track
-        at = next(
-            (at for at, part in enumerate(names)
-             if part.channel in (None, note.channel) and part.track in (None, track)), None,
-        )  # fmt: skip
+        at = index_of(names, note.channel, track)
         if at is not None:
             end = score.events[note.ends].beat if note.ends >= 0 else note.beat + 1.0
             begin, end = (note.start_s, note.end_s) if by_frames else (note.beat, end)
@@ -214,8 +212,8 @@ def _written(
     begins = sorted({note.begin for _, heard in voices for note in heard})
     if not begins:
         raise ScoreError("has no note to write")
-    if max(note.end for _, heard in voices for note in heard) > notated.MOST_BEATS:
-        raise ScoreError(f"is longer than {notated.MOST_BEATS} quarters")
+    if max(note.end for _, heard in voices for note in heard) > notated.MAX_BEATS:
+        raise ScoreError(f"is longer than {notated.MAX_BEATS} quarters")
     grid = _Grid(begins)
     parts = []
     chords = 0

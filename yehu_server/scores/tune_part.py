@@ -20,7 +20,7 @@ ACCOMPANIES = re.compile(
 LOWEST_TUNE = 50.0  # mean of MIDI notes, below which a part is a bass
 LONG_ENOUGH = 0.25  # of the time that the longest part sounds
 IN_RANGE = 0.9  # of its notes, moved by octaves as a whole
-TOGETHER, MOST_TOGETHER = 0.02, 0.15  # quarters or seconds apart, and share of notes: chords
+TOGETHER, MAX_TOGETHER = 0.02, 0.15  # quarters or seconds apart, and share of notes: chords
 REPEATED = 0.8  # share of notes equal to the one before, from which a part is an accompaniment
 OVERLAP = 0.05  # of the shorter part's sound, from which two parts sound at once
 
@@ -63,7 +63,7 @@ def _is_tune(notes: Sequence[NoteSpan], longest: float, within: NoteRange) -> bo
     octaves = octaves_of([note for note in notes if note.pitches], float("inf"), within)
     return (
         sum(pitches) / len(pitches) >= LOWEST_TUNE
-        and chords <= MOST_TOGETHER * len(notes)
+        and chords <= MAX_TOGETHER * len(notes)
         and same <= REPEATED * len(pitches)
         and octaves.outside <= (1.0 - IN_RANGE) * len(notes)
     )

@@ -147,23 +147,10 @@ def simulate(
     strings_every: int = 0,
     progress: Callable[[float, float], None] | None = None,
 ) -> Simulation:
-    """Run the model with a gesture.
+    """Run the model with a gesture; see `api.simulated.simulate`.
 
-    Parameters
-    ----------
-    energy : bool
-        Keep the energy ledger too: energy (J), power and losses (W), energy_error (W).
-    strings_every : int
-        Keep the shapes of both strings every so many samples; 0 for never.
-    progress : callable
-        Called with the seconds done and in all.
-
-    Raises
-    ------
-    ParameterError
-        Where the quantities make no stable model at this rate.
-    OutputError
-        Where the arrays would take more than MAX_BYTES.
+    Raises ParameterError where the quantities make no stable model at this rate; OutputError where
+    the arrays would take more than MAX_BYTES.
     """
     model = kernel.prepare(gesture.quantities, gesture.sample_rate)
     more = refined.prepare(gesture.quantities, gesture.sample_rate)
@@ -200,14 +187,21 @@ def simulate(
     if energy:
         arrays |= {name: ledger[:, column] for column, name in enumerate(LEDGER)}
     if strings_every:
-        arrays["strings_time"] = arrays["time"][::strings_every]
-        for i in range(STRINGS):
-            arrays[f"string_{i + 1}"] = np.array(shaped[i])
-            length = gesture.quantities.strings[i].L
-            arrays[f"x_{i + 1}"] = np.linspace(0.0, length, int(m["N"][i]) + 1)
+        arrays |= shapes_of(shaped, m, gesture.quantities, arrays["time"][::strings_every])
     asked = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
     own = None if more is None else more[0]
     return Simulation(arrays, asked | metadata_of(m, state[0], frames, gesture.quantities, own))
+
+
+def shapes_of(
+    kept: list[list[Floats]], m: Any, quantities: Quantities, time: Floats
+) -> dict[str, Floats]:
+    """The arrays of both strings, whose shapes (see `shape_of`) were kept at some times (s)."""
+    found = {"strings_time": time}
+    for i, string in enumerate(quantities.strings):
+        found[f"string_{i + 1}"] = np.array(kept[i])
+        found[f"x_{i + 1}"] = np.linspace(0.0, string.L, int(m["N"][i]) + 1)
+    return found
 
 
 def signals(probes: Floats, controls: Floats, sample_rate: float) -> dict[str, Floats]:

@@ -9,7 +9,7 @@ from sound import bow, run
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.limiter import CEILING, limit
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.rendering.true_peak import TruePeak
+from yehu_server.rendering.to_files import TruePeak
 
 RATE = 44100
 KNEE = 10.0 ** (-3.0 / 20.0)

@@ -8,7 +8,7 @@ import pytest
 from hands import Watched, ideal
 
 from yehu_server.core.player.brilliance import HARDER, NEARER, PLAIN_EFFORT, PLAIN_PLACE
-from yehu_server.core.player.calibration import ABOVE, GAINS, PITCHES
+from yehu_server.core.player.note_tables import ABOVE, GAINS, PITCHES
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.player import Player
 

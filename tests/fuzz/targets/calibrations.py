@@ -11,14 +11,14 @@ from unittest.mock import patch
 from fuzz.instrument import CALIBRATION
 from fuzz.target import scratch, target
 
-from yehu_server.core.player.calibration import Calibration, Tables
+from yehu_server.core.player.note_tables import NoteTables, Tables
 from yehu_server.playing.calibration_store import calibration_for
 
 RATE = 31_000.0  # no shipped calibration has it
 HOME = sys.modules[calibration_for.__module__]
 
 
-def asked() -> Calibration:
+def asked() -> NoteTables:
     """The calibration from the cache, or the one that stands for a measurement."""
     with (
         patch.object(HOME, "data_folder", lambda: scratch() / "cache"),

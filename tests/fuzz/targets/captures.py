@@ -13,7 +13,7 @@ from yehu_server.core.player.commands import KINDS, RAMP
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
 from yehu_server.scores.capture import Capture, read_capture
-from yehu_server.scores.capture_format import MOST_FRAMES
+from yehu_server.scores.capture_format import MAX_FRAMES
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
 
@@ -55,7 +55,7 @@ def check_commands(taken: Capture) -> None:
     ramps = commands[(commands["kind"] == RAMP) & (commands["index"] != SILENCE)]
     assert (ramps["value"] >= LOWEST[ramps["index"]]).all()
     assert (ramps["value"] <= HIGHEST[ramps["index"]]).all()
-    assert ((ramps["other"] >= 0) & (ramps["other"] <= MOST_FRAMES)).all()
+    assert ((ramps["other"] >= 0) & (ramps["other"] <= MAX_FRAMES)).all()
     instrument = Instrument()
     for frame, *command in commands[:MOST_APPLIED].tolist():
         instrument.now_s = frame / instrument.rate
@@ -69,8 +69,8 @@ def capture(data: bytes) -> None:
     path = written(data, "file.jsonl")
     taken = read_capture(path)
     check_beginning(taken.beginning)
-    assert 0 <= taken.frames <= MOST_FRAMES  # replay sets a bound of its own: --max-duration
-    assert all(0 <= since <= rest <= MOST_FRAMES for rest, since in taken.gaps.items())
+    assert 0 <= taken.frames <= MAX_FRAMES  # replay sets a bound of its own: --max-duration
+    assert all(0 <= since <= rest <= MAX_FRAMES for rest, since in taken.gaps.items())
     check_commands(taken)
     again = scratch() / "again.jsonl"
     again.unlink(missing_ok=True)

@@ -8,7 +8,7 @@ from fuzz.target import target
 from fuzz.targets.scores_musicxml import check_written
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.jianpu.reader import MOST_UNKNOWN, parse_jianpu
+from yehu_server.scores.jianpu.reader import MAX_UNKNOWN, parse_jianpu
 
 WORDS = """
 title= notation=工尺谱 mode=活五 1=F 6=D 4/4 3/4,4 4=96 4.=60 NextPart NextScore R{ R3{ R100{ A{ | }
@@ -28,7 +28,7 @@ def jianpu(data: bytes) -> None:
     """A text gives notes in order, with known marks and finite pitches, or a ScoreError."""
     written = parse_jianpu(data)
     assert any(part.notes for part in written.parts)
-    assert len(written.unknown) <= MOST_UNKNOWN + 1
+    assert len(written.unknown) <= MAX_UNKNOWN + 1
     check_written(written)
     for part in written.parts:
         assert all(span.begin < span.end for span in part.spans)

@@ -13,8 +13,8 @@ from midi_bytes import END, chunk, mac_binary, number, riff
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import MAX_DURATION_H, Score
-from yehu_server.scores.smf.faults import DamagedError
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.scores.smf.track import DamagedError
 
 MOST_PARTS, MOST_EVENTS, MOST_SONGS = 64, 4096, 3
 NO_SONG = re.compile("there is no song|has nothing to play")

@@ -8,7 +8,7 @@ from pathlib import Path
 from fuzz.target import ROOT, target, written
 
 from yehu_server.errors import ParameterError
-from yehu_server.playing.tuning import KEYS, MOST_SEMITONES, Tuning, read_tuning
+from yehu_server.playing.tuning import KEYS, MAX_SEMITONES, Tuning, read_tuning
 
 SCALE = ROOT / "tunings" / "chaozhou-seven-equal.scl"
 
@@ -17,7 +17,7 @@ def check(tuning: Tuning) -> None:
     assert tuning.keys is not None
     assert len(tuning.keys) == len(KEYS)
     for key in tuning.keys:
-        assert key is None or abs(key) <= MOST_SEMITONES
+        assert key is None or abs(key) <= MAX_SEMITONES
     for note in (0.0, 59.5, 60.0, 69.25, 127.0, 128.0, math.nan):
         pitch = tuning.pitch(note, 442.0)
         assert pitch is None or math.isfinite(pitch)

@@ -10,7 +10,7 @@ import soundfile
 from live.page.browser import drive
 
 from yehu_server.cli import main
-from yehu_server.core.player.calibration import frequency_hz
+from yehu_server.core.player.note_tables import frequency_hz
 from yehu_server.playing.pitch_and_level import cents, pitch_hz
 
 B4, E5 = 71.0, 76.0

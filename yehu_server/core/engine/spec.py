@@ -8,9 +8,9 @@ from typing import Any
 
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import default_bowing_table
-from yehu_server.core.player.calibration import Calibration
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.note_range import NoteRange
+from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.params.table import TABLE, find
 
 SEED = "/engine/seed"
@@ -26,7 +26,7 @@ class InstrumentSpec:
         Sample rate (Hz), within the bounds of ``physics.grid``.
     quantities : Quantities
         The physical instrument, as it is tuned; by default the measured one.
-    calibration : Calibration, optional
+    calibration : NoteTables, optional
         Where its player's fingers stop; by default where an ideal string is in tune.
     open_strings : OpenStrings
         When the C string is played open.
@@ -44,7 +44,7 @@ class InstrumentSpec:
 
     rate: float
     quantities: Quantities = field(default_factory=Quantities)
-    calibration: Calibration | None = None
+    calibration: NoteTables | None = None
     open_strings: OpenStrings = OpenStrings.ALWAYS
     seed: int = 0
     bowing: Any = field(default_factory=default_bowing_table, compare=False)

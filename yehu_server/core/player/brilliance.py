@@ -16,8 +16,8 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, uncompiled
 from yehu_server.core.physics.elementary import exp2, log2
-from yehu_server.core.player.calibration import ABOVE, GAINS, PLAIN
 from yehu_server.core.player.intonation import ALL, in_tables, place_in
+from yehu_server.core.player.note_tables import ABOVE, GAINS, PLAIN
 from yehu_server.core.player.ownership import USUAL_MS, move
 from yehu_server.core.player.parameter_indices import (
     BODY_BRILLIANCE,
@@ -85,7 +85,7 @@ def set_brilliance(p: Any, c: Any, string: int, pitch: float, effort: float) -> 
 def usual_shelf(centroids: Any, string: int, pitch: float) -> tuple[float, float]:
     """Gain (dB) and frequency (Hz) that a pitch of a yehu's string has, as the usual bow draws it.
 
-    `centroids`: of the notes of that string, as of a `Calibration`.
+    `centroids`: of the notes of that string, as of a `NoteTables`.
     """
     rows = np.array(centroids)
     own = [np.interp(pitch, ALL[string], column) for column in rows.T]

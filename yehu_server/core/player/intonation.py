@@ -9,7 +9,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.elementary import exp2, log
 from yehu_server.core.physics.layout import STRINGS
-from yehu_server.core.player.calibration import OPEN_NOTES, PITCHES, ROWS_OF_A_YEHU, SPEEDS
+from yehu_server.core.player.note_tables import OPEN_NOTES, PITCHES, ROWS_OF_A_YEHU, SPEEDS
 from yehu_server.core.player.parameter_indices import SHARPENING_CORRECTION
 
 Array = Any

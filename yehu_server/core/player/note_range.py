@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.calibration import OPEN_NOTES, Calibration
+from yehu_server.core.player.note_tables import OPEN_NOTES, NoteTables
 
 REACHES = tuple(string.reach for string in Quantities().strings)
 
@@ -19,7 +19,7 @@ class NoteRange:
     bridge_x: float = Quantities().bridge_x  # m, by which harmonics are found
 
     @classmethod
-    def of(cls, quantities: Quantities, calibration: Calibration | None) -> NoteRange:
+    def of(cls, quantities: Quantities, calibration: NoteTables | None) -> NoteRange:
         """That of an instrument as it is tuned."""
         open_notes = OPEN_NOTES if calibration is None else calibration.open_notes
         return cls.tuned_to(open_notes, quantities)

@@ -11,18 +11,18 @@ from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import BOWING_SIZE, DEFAULT_BOWING, PLACES, default_bowing_table
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
-from yehu_server.core.player.calibration import (
-    GAINS,
-    PITCHES,
-    SPEEDS,
-    Calibration,
-    wave_speed,
-)
 from yehu_server.core.player.drift import DRIFT_STATE
 from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
 from yehu_server.core.player.gestures import GESTURE, RESTING
 from yehu_server.core.player.note_range import NoteRange
+from yehu_server.core.player.note_tables import (
+    GAINS,
+    PITCHES,
+    SPEEDS,
+    NoteTables,
+    wave_speed,
+)
 from yehu_server.core.player.parameter_indices import (
     BOW_SIDE,
     BOW_SPEED,
@@ -138,7 +138,7 @@ def prepare_player(
     rate: float,
     values: Mapping[str, float],
     *,
-    calibration: Calibration | None = None,
+    calibration: NoteTables | None = None,
     open_strings: OpenStrings = OpenStrings.ALWAYS,
     bowing: Any = None,
     seed: int = 0,
@@ -153,7 +153,7 @@ def prepare_player(
     rate : float, Hz
     values : mapping
         The value of every parameter, by address.
-    calibration : Calibration, optional
+    calibration : NoteTables, optional
         By default fingers stop where an ideal string is in tune, and no note is evened out.
     bowing : ndarray
         By default `default_bowing_table`.

@@ -16,8 +16,8 @@ from yehu_server.core.physics.quantities import Body
 from yehu_server.core.physics.radiation import magnitude, response_parts
 from yehu_server.core.physics.shelf import shelf_gain
 from yehu_server.core.player.brilliance import usual_shelf
-from yehu_server.core.player.calibration import OPEN_NOTES, Tables
 from yehu_server.core.player.fingering import OPEN_WITHIN
+from yehu_server.core.player.note_tables import OPEN_NOTES, Tables
 from yehu_server.util.loudness import a_weighting
 
 Array = Any
@@ -42,7 +42,7 @@ def vibrato_table(
 
     `a4`: reference pitch (Hz).
     `open_notes`: MIDI notes; the lower one is of the first row.
-    `centroids`: as of a `Calibration`; without them no note is made brighter.
+    `centroids`: as of a `NoteTables`; without them no note is made brighter.
 
     Returns
     -------

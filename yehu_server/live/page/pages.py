@@ -15,8 +15,8 @@ from yehu_server.live.network import Address
 from yehu_server.live.page.guests import Guests
 from yehu_server.live.page.players import CHANNELS, FIRST
 from yehu_server.live.web.server import listen
+from yehu_server.playing.parts import SECTION
 from yehu_server.playing.player import Player
-from yehu_server.playing.section_instruments import SECTION
 from yehu_server.util.processes import Child, Supervisor
 
 STATUS_S = 0.5

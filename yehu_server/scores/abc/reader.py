@@ -18,7 +18,7 @@ from yehu_server.scores.abc.fields import SHORTCUTS, metre_of, order_of_parts
 from yehu_server.scores.abc.voice import VoiceReader
 from yehu_server.scores.score import naming, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
-from yehu_server.scores.written.notated import MOST_PARTS, Written
+from yehu_server.scores.written.notated import MAX_PARTS, Written
 
 MOST_BYTES = 4 << 20
 MUSIC_FIELDS = "KLMQ"
@@ -114,8 +114,8 @@ class _Tune:
 
     def _voice(self, name: str) -> VoiceReader:
         if name not in self._voices:
-            if len(self._voices) >= MOST_PARTS:
-                raise ScoreError(f"has more than {MOST_PARTS} voices")
+            if len(self._voices) >= MAX_PARTS:
+                raise ScoreError(f"has more than {MAX_PARTS} voices")
             voice = VoiceReader(self._unknown, self._warnings, self._shortcuts)
             metre = next((metre_of(text) for key, text in self._defaults[::-1] if key == "M"), None)
             if metre is not None and metre < 3:

@@ -11,8 +11,8 @@ from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores.abc import fields
 from yehu_server.scores.abc.fields import ALTERS, DECORATIONS, JUMPS, WEDGES
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
-from yehu_server.scores.written.notated import DYNAMICS, FORCED, MOST_NOTES, Mark
-from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
+from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
 from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
@@ -199,8 +199,8 @@ class VoiceReader:
     def _add(self, notes: list[RawNote], length: Fraction) -> None:
         """Put a note, or a rest, where the music is."""
         self._count += 1
-        if self._count > MOST_NOTES:
-            raise ScoreError(f"has more than {MOST_NOTES} notes")
+        if self._count > MAX_NOTES:
+            raise ScoreError(f"has more than {MAX_NOTES} notes")
         length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
         self._next_factor = Fraction(1)
         length = min(length, Fraction(LONGEST))
@@ -298,7 +298,7 @@ class VoiceReader:
             sign = ":|:"
         before = len(sign) - len(sign.lstrip(":"))
         after = len(sign) - len(sign.rstrip(":"))
-        self._end_bar(min(before + 1, MOST_TIMES) if before else 0)
+        self._end_bar(min(before + 1, MAX_TIMES) if before else 0)
         if before or after or len(sign) > 1:
             self._ending = self._bar.lines.endings = frozenset()
         if after:
@@ -327,7 +327,7 @@ class VoiceReader:
             first, _, last = each.partition("-")
             if first.isdecimal():
                 end = int(last[:3]) if last.isdecimal() else int(first[:3])
-                numbers |= {*range(int(first[:3]), min(end, MOST_TIMES) + 1)}
+                numbers |= {*range(int(first[:3]), min(end, MAX_TIMES) + 1)}
         self._ending = frozenset(numbers) or frozenset({1})
         self._bar.lines.endings, self._bar.lines.opens = self._ending, True
 

@@ -41,7 +41,7 @@ LIVING_FROM, LIVING_PAST = -0.75, 0.25
 LIVING_SWINGS = (-0.45, 0.2, -0.3, 0.3)
 # By ear, of the heavy three in that mode, which turns widely: down, and back.
 TURNING_SWINGS = (-0.5, 0.25)
-MOST_POINTS = 64
+MAX_POINTS = 64
 _HEAVY = frozenset({SAN, LIU})
 
 
@@ -95,7 +95,7 @@ def living(character: str, quarters: Fraction) -> Contour:
         rise = (min(RISE_QUARTERS, quarters / 2), LIVING_PAST)
         swings, points = LIVING_SWINGS, [(Fraction(0), LIVING_FROM), rise]
     at = points[-1][0] + SWING_QUARTERS
-    for swing in islice(cycle(swings), MOST_POINTS):
+    for swing in islice(cycle(swings), MAX_POINTS):
         if at >= quarters:
             break
         points.append((at, swing))

@@ -16,9 +16,9 @@ from yehu_server.scores.written.words import Meaning
 UNFIT = "bar lines do not fit the metre"
 FINE, SEGNO, TO_CODA, DA_CAPO, DAL_SEGNO = JUMPS = ("Fine", "Segno", "ToCoda", "DC", "DS")
 BACK, ENDS = (DA_CAPO, DAL_SEGNO), (FINE, TO_CODA)
-MOST_UNFOLDED = 50_000  # notes, rests and dashes of a part
-MOST_DEPTH = 8  # repeats within repeats
-MOST_TIMES = 100
+MAX_UNFOLDED = 50_000  # notes, rests and dashes of a part
+MAX_DEPTH = 8  # repeats within repeats
+MAX_TIMES = 100
 
 
 class Bars:
@@ -32,7 +32,7 @@ class Bars:
         self.length, self.place = Fraction(4), Fraction(0)
         self._notices = notices
         self._is_written = False
-        self._before_repeat = Fraction(0)
+        self.before_repeat = Fraction(0)  # the place where the last one's first time ended
         self._upbeat = Fraction(0)
         self._short: Word | None = None  # the end of a bar that an upbeat completes, if it is last
 
@@ -64,16 +64,8 @@ class Bars:
 
     def repeat(self, begin: Fraction, times: int) -> None:
         """Move to the place after a repeat, which began at a place."""
-        self._before_repeat = self.place
+        self.before_repeat = self.place
         self.place = (begin + times * (self.place - begin)) % self.length
-
-    def undo_repeat(self) -> None:
-        """Go back to the end of the last repeat's first time, where its endings begin."""
-        self.place = self._before_repeat
-
-    def return_to(self, place: Fraction) -> None:
-        """Go back to the place where the first ending began, for the next one."""
-        self.place = place
 
     def _warn(self, what: str, word: Word) -> None:
         first = next((text for text in self._notices if text.startswith(what)), None)
@@ -136,15 +128,15 @@ class RepeatStack:
 
     def open_repeat(self, times: str, word: Word, *, signs: bool = False) -> None:
         """Begin a repeat. Raises ScoreError beyond its bounds."""
-        if len(times) > 4 or int(times) > MOST_TIMES:
-            raise failure(word, f"more than {MOST_TIMES} times")
+        if len(times) > 4 or int(times) > MAX_TIMES:
+            raise failure(word, f"more than {MAX_TIMES} times")
         repeat = Repeat(int(times))
         self._open(_Open(repeat.body, word, repeat, self._bars.place, signs=signs))
         self._stack[-2].elements.append(repeat)
 
     def _open(self, opened: _Open) -> None:
-        if len(self._stack) > MOST_DEPTH:
-            raise failure(opened.word, f"more than {MOST_DEPTH} repeats within each other")
+        if len(self._stack) > MAX_DEPTH:
+            raise failure(opened.word, f"more than {MAX_DEPTH} repeats within each other")
         self._stack.append(opened)
 
     def open_endings(self, word: Word) -> None:
@@ -153,7 +145,7 @@ class RepeatStack:
         if not isinstance(before, Repeat) or before.endings:
             raise failure(word, "A{ belongs after the } of a repeat")
         before.endings.append([])
-        self._bars.undo_repeat()
+        self._bars.place = self._bars.before_repeat
         self._open(_Open(before.endings[0], word, before, self._bars.place, endings=True))
 
     def bar_line(self, word: Word) -> None:
@@ -162,11 +154,11 @@ class RepeatStack:
         if not opened.endings:
             self._bars.line(word)
             return
-        if len(opened.repeat.endings) == MOST_TIMES:
-            raise failure(word, f"more than {MOST_TIMES} endings")
+        if len(opened.repeat.endings) == MAX_TIMES:
+            raise failure(word, f"more than {MAX_TIMES} endings")
         opened.elements = []
         opened.repeat.endings.append(opened.elements)
-        self._bars.return_to(opened.begin)
+        self._bars.place = opened.begin
 
     def begin_by_sign(self, word: Word) -> None:
         """Begin a repeat at ``|:``; an open one of such a sign ends."""
@@ -211,7 +203,7 @@ def unfolded(written: Sequence[object]) -> tuple[list[object], list[str]]:
     """Elements in the order of playing, and warnings.
 
     After a da capo or dal segno, repeats are not taken again, and of endings the last is played.
-    Only the first of several is taken. Raises ScoreError where there are more than MOST_UNFOLDED.
+    Only the first of several is taken. Raises ScoreError where there are more than MAX_UNFOLDED.
     """
     once = _flat(written, repeated=True)
     back = next((at for at, each in enumerate(once) if each in BACK), None)
@@ -262,5 +254,5 @@ def _flat(written: Sequence[object], *, repeated: bool) -> list[object]:
 
 
 def _check(notes: float) -> None:
-    if notes > MOST_UNFOLDED:
-        raise ScoreError(f"with its repeats, has more than {MOST_UNFOLDED} notes")
+    if notes > MAX_UNFOLDED:
+        raise ScoreError(f"with its repeats, has more than {MAX_UNFOLDED} notes")

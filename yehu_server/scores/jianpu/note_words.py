@@ -12,8 +12,8 @@ from yehu_server.scores.jianpu.characters import CHARACTERS, WEIGHTS
 
 MAJOR = (0.0, 2.0, 4.0, 5.0, 7.0, 9.0, 11.0)
 LENGTHS = "cqsdh"  # crotchet, quaver, semiquaver, demi-, hemidemisemiquaver
-MOST_OCTAVES, MOST_DOTS, MOST_FIGURES = 4, 4, 16
-MOST_LETTERS = 64  # of a word that may be a note
+MAX_OCTAVES, MAX_DOTS, MAX_FIGURES = 4, 4, 16
+MAX_LETTERS = 64  # of a word that may be a note
 
 _HIGH = {"8": "1", "9": "2"}  # an octave higher
 _GRACE = re.compile(r"g\[([^\]]+)\]|\[([^\]]+)\]g")
@@ -72,7 +72,7 @@ class GraceWord:
 @lru_cache(maxsize=4096)
 def note_word(text: str, octaves: Octaves) -> NoteWord | None:
     """Read a word as a note, rest or dash; None where it is none."""
-    if len(text) > MOST_LETTERS or text in ("-.", "->"):  # staccato, accent
+    if len(text) > MAX_LETTERS or text in ("-.", "->"):  # staccato, accent
         return None
     plain = "-" if text == "." else text
     tremolo = plain.count("///") == 1
@@ -102,7 +102,7 @@ def _length(text: str) -> tuple[int | None, int] | None:
     letters = [sign for sign in text if sign in LENGTHS]
     strokes = text.count("\\") + text.count("_")  # lines under the figure
     dots = text.count(".")
-    if len(letters) > 1 or (letters and strokes) or strokes > 4 or dots > MOST_DOTS:
+    if len(letters) > 1 or (letters and strokes) or strokes > 4 or dots > MAX_DOTS:
         return None
     if text.startswith(("\\", "_")):  # a command
         return None
@@ -123,7 +123,7 @@ def _figures(bare: str, octaves: Octaves) -> tuple[tuple[Figure, ...], bool]:
             between[-1] += sign
         else:
             return (), False
-    if not 1 <= len(signs) <= MOST_FIGURES:
+    if not 1 <= len(signs) <= MAX_FIGURES:
         return (), False
     befores, afters, unsure = _shared(between, octaves)
     figures = [
@@ -173,7 +173,7 @@ def _figure(sign: str, signs: str) -> Figure | None:
     up, down = signs.count("'"), signs.count(",")
     sharps, flats = signs.count("#"), signs.count("b")
     weights = [WEIGHTS[each] for each in signs if each in WEIGHTS]
-    if (up and down) or (sharps and flats) or max(up, down) > MOST_OCTAVES:
+    if (up and down) or (sharps and flats) or max(up, down) > MAX_OCTAVES:
         return None
     if max(sharps, flats) > 2 or len(weights) > 1 or (weights and sign.isascii()):
         return None
@@ -185,7 +185,7 @@ def _figure(sign: str, signs: str) -> Figure | None:
 @lru_cache(maxsize=1024)
 def grace_word(text: str, octaves: Octaves) -> GraceWord | None:
     """Read a word as grace notes; None where it is none."""
-    found = _GRACE.fullmatch(text) if len(text) <= MOST_LETTERS else None
+    found = _GRACE.fullmatch(text) if len(text) <= MAX_LETTERS else None
     if found is None:
         return None
     lengths: list[Fraction] = []

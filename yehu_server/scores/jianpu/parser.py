@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from yehu_server.scores.jianpu.form import (
     JUMPS,
-    MOST_UNFOLDED,
+    MAX_UNFOLDED,
     Bars,
     Element,
     MetreMark,
@@ -26,11 +26,12 @@ from yehu_server.scores.jianpu.note_words import (
     quarters,
 )
 from yehu_server.scores.jianpu.scale import Scale
-from yehu_server.scores.jianpu.text import Word, failure, printable
+from yehu_server.scores.jianpu.text import Word, failure
+from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO, Grace
 from yehu_server.scores.written.words import Meaning
 
-MOST_TUPLET, MOST_BARS_REST = 64, 1000
+MAX_TUPLET, MAX_BARS_REST = 64, 1000
 
 _TEMPO = re.compile(r"(?:(1|2|4|8|16|32|64)(\.{0,2})|\u2669)=([1-9]\d{0,3})")
 _METRE = re.compile(r"([1-9]\d?)/(1|2|4|8|16|32|64)(?:,(1|2|4|8|16|32|64)(\.?))?")
@@ -170,8 +171,8 @@ class PartParser:
 
     def _add(self, element: Element, word: Word) -> None:
         self._count += 1
-        if self._count > MOST_UNFOLDED:
-            raise failure(word, f"more than {MOST_UNFOLDED} notes")
+        if self._count > MAX_UNFOLDED:
+            raise failure(word, f"more than {MAX_UNFOLDED} notes")
         self._braces.add(element)
         self._last = element
         self._bars.step(element.length, word)
@@ -261,8 +262,8 @@ class PartParser:
         self._bars.change(bar, first)
 
     def _rest_of_bars(self, found: re.Match[str], word: Word) -> None:
-        if len(found[1]) > 4 or int(found[1]) > MOST_BARS_REST:
-            raise failure(word, f"a rest of more than {MOST_BARS_REST} bars")
+        if len(found[1]) > 4 or int(found[1]) > MAX_BARS_REST:
+            raise failure(word, f"a rest of more than {MAX_BARS_REST} bars")
         self._add(Element(Kind.REST, int(found[1]) * self._bars.length), word)
 
     # ------------------------------------------------------------ form
@@ -302,8 +303,8 @@ class PartParser:
             self._braces.begin_by_sign(word)
 
     def _begin_tuplet(self, notes: int, word: Word) -> None:
-        if notes > MOST_TUPLET:
-            raise failure(word, f"more than {MOST_TUPLET} notes in a tuplet")
+        if notes > MAX_TUPLET:
+            raise failure(word, f"more than {MAX_TUPLET} notes in a tuplet")
         power = 1 << max(1, (notes - 1).bit_length())
         room = notes * 3 // 2 if power == notes else power // 2
         self._tuplet, self._tuplet_word = Fraction(room, notes), word

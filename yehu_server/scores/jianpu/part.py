@@ -17,7 +17,7 @@ from yehu_server.scores.written.notated import Mark, Note, OpenSpan, Sign, Span,
 from yehu_server.scores.written.words import Meaning
 
 TREMOLO_NOTE = Fraction(1, 8)  # of a tremolo between two notes: a demisemiquaver
-MOST_TREMOLO_NOTES = 20_000
+MAX_TREMOLO_NOTES = 20_000
 
 
 @dataclass(slots=True)
@@ -174,7 +174,7 @@ class PartBuilder:
     def _tremolo(self, note: Note, other: float) -> None:
         """Two notes in turns, under one bow."""
         count = max(2, int(note.length / TREMOLO_NOTE))
-        if len(self.notes) + count > MOST_TREMOLO_NOTES:
+        if len(self.notes) + count > MAX_TREMOLO_NOTES:
             self._notices["tremolos between two notes, of which the first is played"] += 1
             self.notes.append(Note(note.beat, note.length, note.pitch))
             return

@@ -20,22 +20,23 @@ from yehu_server.scores.jianpu.mark_words import IGNORED_HEADERS
 from yehu_server.scores.jianpu.parser import PartParser
 from yehu_server.scores.jianpu.part import PartBuilder
 from yehu_server.scores.jianpu.scale import Scale
-from yehu_server.scores.jianpu.text import Header, Word, decoded, printable, words_of
+from yehu_server.scores.jianpu.text import Header, Word, decoded, words_of
 from yehu_server.scores.score import (
     COMMON_TIME,
     KeySignature,
     Metre,
     naming,
     nearest_key,
+    printable,
     read_score_bytes,
 )
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Bar, Part, Tempo, Written
 
-MOST_BYTES = 1 << 20
-MOST_MOVEMENTS = 64
-MOST_UNKNOWN = 100  # different words that are named
-MOST_NUMBERED = 10_000  # bars
+MAX_BYTES = 1 << 20
+MAX_MOVEMENTS = 64
+MAX_UNKNOWN = 100  # different words that are named
+MAX_NUMBERED = 10_000  # bars
 
 Words = list[Word | Header]  # of a part
 
@@ -45,10 +46,10 @@ def read_jianpu(path: str | os.PathLike[str]) -> Written:
 
     Raises ScoreError, one line that names the file, and the line and column of what cannot be read:
     where it is missing, larger than 1 MiB or no text; has no notes, or more than
-    `form.MOST_UNFOLDED` in a part; where a repeat or tuplet does not end.
+    `form.MAX_UNFOLDED` in a part; where a repeat or tuplet does not end.
     """
     with naming(path):
-        return parse_jianpu(read_score_bytes(path, MOST_BYTES))
+        return parse_jianpu(read_score_bytes(path, MAX_BYTES))
 
 
 def parse_jianpu(data: bytes) -> Written:
@@ -61,10 +62,9 @@ def parse_jianpu(data: bytes) -> Written:
         reader.read(movement)
     written = reader.written()
     lines = [guess] if guess else []
-    lines += [notice if count == 1 else f"{notice} ({count})" for notice, count in notices.items()]
-    named = dict(unknown.most_common(MOST_UNKNOWN))
-    others = unknown.total() - sum(named.values())
-    if others:
+    lines += [notated.times(notice, count) for notice, count in notices.items()]
+    named = dict(unknown.most_common(MAX_UNKNOWN))
+    if others := unknown.total() - sum(named.values()):
         named["other words"] = others
     return replace(written, unknown=named, warnings=tuple(lines))
 
@@ -76,8 +76,8 @@ def _movements(text: str) -> list[list[Words]]:
             if word.text == "NextScore":
                 movements.append([])
             movements[-1].append([])
-            if len(movements[-1]) > notated.MOST_PARTS or len(movements) > MOST_MOVEMENTS:
-                raise ScoreError(f"has more than {notated.MOST_PARTS} parts or movements")
+            if len(movements[-1]) > notated.MAX_PARTS or len(movements) > MAX_MOVEMENTS:
+                raise ScoreError(f"has more than {notated.MAX_PARTS} parts or movements")
         else:
             movements[-1][-1].append(word)
     return movements
@@ -119,8 +119,8 @@ class _Reader:
         for number, each in enumerate(played):
             self._parts.setdefault(number, []).append(each)
         self._end = max(each.end for each in played)
-        if self._end > notated.MOST_BEATS:
-            raise ScoreError(f"lasts more than {notated.MOST_BEATS} quarter notes")
+        if self._end > notated.MAX_BEATS:
+            raise ScoreError(f"lasts more than {notated.MAX_BEATS} quarter notes")
 
     def _head(self, header: Header, scale: Scale, part: int) -> None:
         if header.name in ("title", "标题", "曲名"):
@@ -178,7 +178,7 @@ class _Reader:
             beat, end = Fraction(metre.beat), Fraction(after.beat)
             if metre.quarters < after.quarters and end - beat == metre.quarters:  # a pickup
                 number -= 1
-            while beat < end and len(bars) < MOST_NUMBERED:
+            while beat < end and len(bars) < MAX_NUMBERED:
                 bars.append(Bar(beat, str(number)))
                 beat += Fraction(metre.quarters)
                 number += 1

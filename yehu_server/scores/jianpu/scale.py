@@ -6,8 +6,9 @@ import re
 from collections.abc import Mapping
 
 from yehu_server.scores.jianpu.characters import DEFAULT_MODE, ERSIPU, is_living, semitones_of
-from yehu_server.scores.jianpu.note_words import MAJOR, MOST_OCTAVES, Figure
-from yehu_server.scores.jianpu.text import Word, failure, printable
+from yehu_server.scores.jianpu.note_words import MAJOR, MAX_OCTAVES, Figure
+from yehu_server.scores.jianpu.text import Word, failure
+from yehu_server.scores.score import printable
 from yehu_server.scores.written.layout import SEMITONES
 
 MIDDLE_C = 60.0
@@ -45,7 +46,7 @@ class Scale:
     def shift(self, octaves: int, word: Word) -> None:
         """Move the base octave. Raises ScoreError where it is too far from the middle."""
         self._octave += octaves
-        if abs(self._octave) > MOST_OCTAVES:
+        if abs(self._octave) > MAX_OCTAVES:
             raise failure(word, "the base octave is too far from the middle")
 
     def pitch(self, figure: Figure, word: Word, *, shifted: bool = False) -> float:

@@ -22,8 +22,6 @@ _PLAIN = {
     0x266F: ord("#"),
 }
 
-MOST_SHOWN = 40  # characters of a word in messages
-
 _HEADER = re.compile(r"\s*([^\W\d_]+)\s*=")
 _WORD_SIGNS = {"Fr", "slide"}  # begin with a name and = as headers do, but are words
 _WORD = re.compile(r'[_^-]?"[^"]*"|\S+')
@@ -53,12 +51,6 @@ class Header:
 def failure(word: Word, reason: str) -> ScoreError:
     """An error at a word."""
     return ScoreError(f"line {word.line}, column {word.column}: {reason}")
-
-
-def printable(text: str) -> str:
-    """A word for a message: short and printable."""
-    short = text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
-    return short if short.isprintable() else ascii(short)[1:-1]
 
 
 def decoded(data: bytes) -> tuple[str, str]:

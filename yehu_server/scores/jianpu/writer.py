@@ -99,11 +99,8 @@ class _PartWriter:
 
     def _can_say(self, span: Span, written: Written) -> bool:
         if span.name in WRITTEN_CHANGES:
-            ends = {tempo.beat for tempo in written.tempi}
-            ends |= {each.begin for each in self._part.spans if each.name in WRITTEN_CHANGES}
-            is_usual = span.end - span.begin == notated.LONGEST_CHANGE or span.end >= written.end
-            if span.value is not None or not (is_usual or span.end in ends):
-                self._lost[f"how far a {span.name} goes"] += 1
+            is_read = layout.ends_as_read(span, self._part, written, written.end)
+            self._lost[f"how far a {span.name} goes"] += not is_read
             return True
         if span.name in HAIRPINS:
             at = bisect_right(self._cuts, span.begin)

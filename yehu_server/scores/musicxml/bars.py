@@ -9,20 +9,15 @@ from xml.etree.ElementTree import Element
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
-from yehu_server.scores.musicxml.marks import NoteMarks, neighbour, number, printable
-from yehu_server.scores.score import nearest_key
+from yehu_server.scores.musicxml.marks import VALUES, NoteMarks, neighbour, number
+from yehu_server.scores.score import nearest_key, printable
 from yehu_server.scores.written.layout import SEMITONES
-from yehu_server.scores.written.notated import MOST_BEATS, MOST_NOTES
-from yehu_server.scores.written.repeats import MOST_TIMES, BarLines
+from yehu_server.scores.written.notated import MAX_BEATS, MAX_NOTES
+from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
 from yehu_server.scores.written.voices import FINEST, RawBar, RawDirection, RawNote
 
-MOST_DIVISIONS = 1 << 20  # of a quarter note
+MAX_DIVISIONS = 1 << 20  # of a quarter note
 LOWEST, HIGHEST = 0.0, 127.0  # MIDI notes
-TYPES = {
-    "maxima": Fraction(32), "long": Fraction(16), "breve": Fraction(8), "whole": Fraction(4),
-    "half": Fraction(2), "quarter": Fraction(1), "eighth": Fraction(1, 2), "16th": Fraction(1, 4),
-    "32nd": Fraction(1, 8), "64th": Fraction(1, 16), "128th": Fraction(1, 32),
-}  # fmt: skip
 _NUMBERS = re.compile(r"\d+")
 # What is printed, or sounds by other means than this instrument.
 PRINTED = {
@@ -83,8 +78,8 @@ class BarReader:
                 self._warnings["chord symbols are not played"] += 1
             if self._at.denominator > FINEST:  # divisions that change and change
                 self._at = self._at.limit_denominator(FINEST)
-            if self._at > MOST_BEATS:
-                raise ScoreError(f"has a bar longer than {MOST_BEATS} quarters")
+            if self._at > MAX_BEATS:
+                raise ScoreError(f"has a bar longer than {MAX_BEATS} quarters")
         if not bar.notes:  # rests may be longer than their bar, where they fill it
             bar.length = min(bar.length, self._metre) or self._metre
         return bar
@@ -95,10 +90,10 @@ class BarReader:
 
     def _duration(self, element: Element) -> Fraction:
         value = number(element.findtext("duration"))
-        if not 0.0 <= value <= MOST_BEATS * MOST_DIVISIONS:
+        if not 0.0 <= value <= MAX_BEATS * MAX_DIVISIONS:
             self._warnings["durations below zero or beyond reason are left out"] += 1
             return Fraction(0)
-        return Fraction(value).limit_denominator(MOST_DIVISIONS) / self._divisions
+        return Fraction(value).limit_denominator(MAX_DIVISIONS) / self._divisions
 
     # -- attributes and bar lines ------------------------------------------------------------
 
@@ -139,7 +134,7 @@ class BarReader:
                 lines.forward = True
             elif child.tag == "repeat":
                 times = number(child.get("times"), 2.0)
-                lines.times = int(min(max(times, 2.0), MOST_TIMES))
+                lines.times = int(min(max(times, 2.0), MAX_TIMES))
             elif child.tag == "ending":
                 self._read_ending(child)
             elif child.tag in ("segno", "coda"):
@@ -149,14 +144,14 @@ class BarReader:
 
     def _read_ending(self, ending: Element) -> None:
         numbers = {int(number(each)) for each in _NUMBERS.findall(ending.get("number", "")[:64])}
-        numbers = {each for each in numbers if 0 < each <= MOST_TIMES}
+        numbers = {each for each in numbers if 0 < each <= MAX_TIMES}
         lines = self._bar.lines
         starts = ending.get("type") == "start"
         if starts or not lines.endings:  # one that ends and has not begun has one bar
             highest, last = self._last_ending
             follows = highest + 1 if last == self._bars - 1 else 1
             if not (starts and numbers):  # the number at an end may be left over from before
-                numbers = {min(follows, MOST_TIMES)}
+                numbers = {min(follows, MAX_TIMES)}
             if starts or self._bar.lines.times:
                 lines.endings, lines.opens = frozenset(numbers), True
         if lines.endings:
@@ -179,9 +174,10 @@ class BarReader:
             self._bar.length = max(self._bar.length, self._at)
             self._head = note
         is_rest = element.find("rest") is not None
-        silent = "" if is_rest else _why_not_played(element)
-        if silent:
-            self._warnings[silent] += 1
+        is_cue = element.find("cue") is not None
+        if not is_rest and (is_cue or element.get("print-spacing") == "no"):  # as MuseScore has it
+            what = "cue notes" if is_cue else "hidden notes without a place on the page"
+            self._warnings[f"{what} are not played"] += 1
             return
         if is_rest:
             if element.find("notations/fermata") is not None:
@@ -191,11 +187,11 @@ class BarReader:
         if pitch is None:
             return
         self._notes += 1
-        if self._notes > MOST_NOTES:
-            raise ScoreError(f"has more than {MOST_NOTES} notes")
+        if self._notes > MAX_NOTES:
+            raise ScoreError(f"has more than {MAX_NOTES} notes")
         note.pitch = pitch
         if note.is_grace:
-            note.length = TYPES.get((element.findtext("type") or "").strip(), Fraction(1, 2))
+            note.length = VALUES.get((element.findtext("type") or "").strip(), Fraction(1, 2))
             grace = element.find("grace")
             note.is_after = grace is not None and grace.get("steal-time-previous") is not None
         elif length == 0:
@@ -272,16 +268,7 @@ class BarReader:
         note.marks = marks.marks
 
 
-def _why_not_played(element: Element) -> str:
-    """Why a note is not played, as MuseScore has it for hidden ones; empty where it is."""
-    if element.find("cue") is not None:
-        return "cue notes are not played"
-    if element.get("print-spacing") == "no":
-        return "hidden notes without a place on the page are not played"
-    return ""
-
-
 def _divisions(element: Element) -> Fraction | None:
     """The divisions of a quarter note; None where they are zero or beyond reason."""
     value = Fraction(number(element.text)).limit_denominator(1000)
-    return value if 0 < value <= MOST_DIVISIONS else None
+    return value if 0 < value <= MAX_DIVISIONS else None

@@ -6,14 +6,12 @@ from collections import Counter
 from fractions import Fraction
 from xml.etree.ElementTree import Element
 
-from yehu_server.scores.musicxml.marks import number, printable
+from yehu_server.scores.musicxml.marks import VALUES, number
+from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
 from yehu_server.scores.written.voices import RawDirection
-from yehu_server.scores.written.words import Meaning, meaning_of
+from yehu_server.scores.written.words import meaning_of
 
-UNITS = {
-    "breve": 8.0, "whole": 4.0, "half": 2.0, "quarter": 1.0, "eighth": 0.5, "16th": 0.25,
-}  # fmt: skip
 FORTE = 90.0  # the MIDI velocity of which <sound dynamics> is a percentage
 LONGEST_WORDS = 200
 JUMPS = ("dacapo", "dalsegno", "tocoda", "fine", "segno", "coda")
@@ -98,14 +96,14 @@ class DirectionReader:
         self._jumps.update(name for name in JUMPS if sound.get(name))
 
     def _metronome(self, metronome: Element, at: Fraction) -> None:
-        unit = UNITS.get((metronome.findtext("beat-unit") or "").strip())
+        unit = VALUES.get((metronome.findtext("beat-unit") or "").strip())
         dots = len(metronome.findall("beat-unit-dot")[:3])
         minute = (metronome.findtext("per-minute") or "").split()
         tempo = number(minute[-1].strip("().=")) if minute else 0.0
         if unit is None or tempo <= 0.0:
             self._unknown["metronome"] += 1
             return
-        tempo *= unit * (2.0 - 0.5**dots)
+        tempo *= float(unit) * (2.0 - 0.5**dots)
         if LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
             self._add(at, "tempo", "figures", tempo)
 
@@ -114,17 +112,12 @@ class DirectionReader:
         if not words:
             return
         meaning = meaning_of(words)
-        if meaning is not None:
-            self._mean(meaning, at, has_tempo=has_tempo, jumps=jumps)
-        elif not has_tempo:  # beside a figure, any words are the tempo's name
-            self._unknown[f'words "{printable(words)}"'] += 1
-
-    def _mean(self, meaning: Meaning, at: Fraction, *, has_tempo: bool, jumps: bool) -> None:
-        if meaning.kind == "jump":
-            if not jumps:
-                self._jumps.add(meaning.name)
-        elif meaning.kind == "tempo":
-            if not has_tempo:
-                self._add(at, "tempo", "words", meaning.value)
-        else:
+        if meaning is None:
+            if not has_tempo:  # beside a figure, any words are the tempo's name
+                self._unknown[f'words "{printable(words)}"'] += 1
+        elif meaning.kind == "jump":
+            self._jumps.update(() if jumps else (meaning.name,))
+        elif meaning.kind != "tempo":
             self._add(at, meaning.kind, meaning.name, meaning.value)
+        elif not has_tempo:
+            self._add(at, "tempo", "words", meaning.value)

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 from xml.etree.ElementTree import Element, SubElement
 
-from yehu_server.errors import one_line
 from yehu_server.params.articulations import ARTICULATIONS
+from yehu_server.scores.score import printable
 from yehu_server.scores.written.layout import LETTERS, STEPS, key_alter, spelled
 from yehu_server.scores.written.notated import Mark, Note
 from yehu_server.scores.written.words import ARTICULATED
@@ -19,16 +20,24 @@ ACCIDENTALS: Mapping[str, float] = {
     "sharp": 1.0, "flat": -1.0, "natural": 0.0, "double-sharp": 2.0, "sharp-sharp": 2.0,
     "flat-flat": -2.0, "double-flat": -2.0, "quarter-sharp": 0.5, "quarter-flat": -0.5,
 }  # fmt: skip
-MOST_SHOWN = 40  # characters of an unknown mark
 
+# Names of lengths (quarters).
+VALUES: Mapping[str, Fraction] = {
+    "long": Fraction(16), "breve": Fraction(8), "whole": Fraction(4), "half": Fraction(2),
+    "quarter": Fraction(1), "eighth": Fraction(1, 2), "16th": Fraction(1, 4),
+    "32nd": Fraction(1, 8), "64th": Fraction(1, 16), "128th": Fraction(1, 32),
+}  # fmt: skip
 # Elements of <notations>, <articulations> and <technical> that are the same mark here.
-MARKS: Mapping[str, str] = {
-    "fermata": "fermata", "arpeggiate": "arpeggio",
+NOTATIONS: Mapping[str, str] = {"fermata": "fermata", "arpeggiate": "arpeggio"}
+GROUPED: Mapping[str, str] = {
     "accent": "accent", "strong-accent": "marcato", "staccato": "staccato", "tenuto": "tenuto",
     "detached-legato": "portato", "staccatissimo": "staccatissimo", "spiccato": "spiccato",
     "scoop": "slide-in-up", "plop": "slide-in-down", "doit": "slide-out-up",
     "falloff": "slide-out-down", "breath-mark": "breath", "caesura": "caesura", "stress": "stress",
     "unstress": "unstress", "soft-accent": "soft-accent",
+}  # fmt: skip
+MARKS: Mapping[str, str] = {
+    **NOTATIONS, **GROUPED,
     "up-bow": "up-bow", "down-bow": "down-bow", "open-string": "open-string", "open": "open-string",
     "snap-pizzicato": "snap-pizzicato", "pluck": "pizzicato",
 }  # fmt: skip
@@ -47,14 +56,8 @@ IGNORED = {
 GROUPS = {"articulations", "ornaments", "technical"}
 STRINGS = {1.0: "outer-string", 2.0: "inner-string"}  # counted from the highest
 Count = Callable[[str], None]
-# Elements by marks: the first of those that are read alike, and the group that it is in.
+# Elements by marks: the first of those that are read alike.
 ELEMENTS = {mark: element for element, mark in reversed([*MARKS.items()])}
-GROUPED = {
-    "accent", "strong-accent", "staccato", "tenuto", "detached-legato", "staccatissimo",
-    "spiccato", "scoop", "plop", "doit", "falloff", "breath-mark", "caesura", "stress", "unstress",
-    "soft-accent",
-}  # fmt: skip
-NOTATIONS = {"fermata", "arpeggiate"}
 ORNAMENT_OF = {mark: (element, way) for element, (mark, way) in reversed([*ORNAMENTS.items()])}
 SIGNS = {alter: name for name, alter in reversed([*ACCIDENTALS.items()])}
 
@@ -71,12 +74,6 @@ def number(text: str | None, default: float = 0.0) -> float:
     except ValueError:
         return default
     return value if abs(value) < 1e9 else default
-
-
-def printable(text: str) -> str:
-    """A mark as a warning shows it."""
-    line = one_line(text.strip())
-    return line if len(line) <= MOST_SHOWN else f"{line[:MOST_SHOWN]}..."
 
 
 def neighbour(letter: str, octave: int, steps: int, fifths: int, alter: float | None) -> float:

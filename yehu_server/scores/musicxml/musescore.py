@@ -12,7 +12,7 @@ from pathlib import Path
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.reader import read_musicxml
 from yehu_server.scores.score import naming, read_score_bytes
-from yehu_server.scores.written.notated import MOST_BYTES, Written
+from yehu_server.scores.written.notated import MAX_BYTES, Written
 
 # The newest first: an older one does not read its files. `mscore` is MuseScore 2 on Debian.
 PROGRAMS = (
@@ -29,7 +29,7 @@ def read_musescore(path: Path) -> Written:
     program, how to export it.
     """
     with naming(path):
-        read_score_bytes(path, MOST_BYTES)
+        read_score_bytes(path, MAX_BYTES)
         with tempfile.TemporaryDirectory(prefix="yehu-server-") as folder:
             target = Path(folder) / "score.musicxml"
             export(path, target)

@@ -22,16 +22,15 @@ from xml.parsers import expat
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.bars import BarReader
-from yehu_server.scores.musicxml.marks import printable
-from yehu_server.scores.score import naming, read_score_bytes
+from yehu_server.scores.score import naming, printable, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
-from yehu_server.scores.written.notated import MOST_BYTES, MOST_PARTS, Written
+from yehu_server.scores.written.notated import MAX_BYTES, MAX_PARTS, Written
 
-MOST_XML_BYTES = 32 << 20
-MOST_ELEMENTS = 1_000_000
+MAX_XML_BYTES = 32 << 20
+MAX_ELEMENTS = 1_000_000
 DEEPEST = 100
-MOST_ENTRIES = 1000  # of an archive
-MOST_CONTAINER_BYTES = 1 << 16
+MAX_ENTRIES = 1000  # of an archive
+MAX_CONTAINER_BYTES = 1 << 16
 ZIP = b"PK\x03\x04"
 CONTAINER = "META-INF/container.xml"
 _SAYS_UTF16 = re.compile(rb"(?:\xef\xbb\xbf)?\s*<\?xml[^>]*encoding=[\"']utf-?16", re.IGNORECASE)
@@ -51,7 +50,8 @@ def read_musicxml(path: str | os.PathLike[str]) -> Written:
     MusicXML or is beyond all bounds.
     """
     with naming(path):
-        return written_of(read_root(path))
+        data = read_score_bytes(path, MAX_XML_BYTES)
+        return written_of(parse(unpacked(data) if data.startswith(ZIP) else data))
 
 
 def written_of(root: Element) -> Written:
@@ -63,15 +63,20 @@ def written_of(root: Element) -> Written:
     unknown: Counter[str] = Counter()
     warnings: Counter[str] = Counter()
     elements = root.findall("part")
-    if len(elements) > MOST_PARTS:
-        raise ScoreError(f"has more than {MOST_PARTS} parts")
-    names = _names(root)
+    if len(elements) > MAX_PARTS:
+        raise ScoreError(f"has more than {MAX_PARTS} parts")
+    names = {
+        part.get("id", ""): printable(part.findtext("part-name") or "")
+        for part in root.iterfind("part-list/score-part")
+    }
+    titles = (root.findtext(path) or "" for path in ("work/work-title", "movement-title"))
+    title = next(filter(None, map(printable, titles)), "")
     parts = []
     for element in elements:
         reader = BarReader(element, unknown, warnings)
         bars = [reader.read(measure) for measure in element.iterfind("measure")]
         parts.append((names.get(element.get("id", ""), ""), bars))
-    return assembled(parts, _title(root), unknown, warnings)
+    return assembled(parts, title, unknown, warnings)
 
 
 def _partwise(root: Element) -> Element:
@@ -88,40 +93,19 @@ def _partwise(root: Element) -> Element:
     return changed
 
 
-def _names(root: Element) -> dict[str, str]:
-    return {
-        part.get("id", ""): printable(part.findtext("part-name") or "")
-        for part in root.iterfind("part-list/score-part")
-    }
-
-
-def _title(root: Element) -> str:
-    for path in ("work/work-title", "movement-title"):
-        title = (root.findtext(path) or "").strip()
-        if title:
-            return printable(title)
-    return ""
-
-
-def read_root(path: str | os.PathLike[str]) -> ET.Element:
-    """Read the root element of a file. Raises ScoreError, one line, without the file's name."""
-    data = read_score_bytes(path, MOST_XML_BYTES)
-    return parse(unpacked(data) if data.startswith(ZIP) else data)
-
-
 def unpacked(data: bytes) -> bytes:
     """Return the score in a compressed file, as its container names it.
 
     Raises ScoreError where the archive is damaged, too large or holds no score.
     """
-    if len(data) > MOST_BYTES:
-        raise ScoreError(f"is an archive larger than {MOST_BYTES >> 20} MiB")
-    if data.count(ENTRY) > MOST_ENTRIES:
-        raise ScoreError(f"is an archive of more than {MOST_ENTRIES} files")
+    if len(data) > MAX_BYTES:
+        raise ScoreError(f"is an archive larger than {MAX_BYTES >> 20} MiB")
+    if data.count(ENTRY) > MAX_ENTRIES:
+        raise ScoreError(f"is an archive of more than {MAX_ENTRIES} files")
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             name = _score_name(archive)
-            return _member(archive, name, MOST_XML_BYTES)
+            return _member(archive, name, MAX_XML_BYTES)
     except DAMAGED as error:
         raise ScoreError(f"is a damaged archive ({type(error).__name__})") from None
 
@@ -129,7 +113,7 @@ def unpacked(data: bytes) -> bytes:
 def _score_name(archive: zipfile.ZipFile) -> str:
     names = archive.namelist()
     if CONTAINER in names:
-        container = parse(_member(archive, CONTAINER, MOST_CONTAINER_BYTES))
+        container = parse(_member(archive, CONTAINER, MAX_CONTAINER_BYTES))
         for file in container.iter("rootfile"):
             kind = file.get("media-type", "application/vnd.recordare.musicxml+xml")
             if "musicxml" in kind and file.get("full-path") in names:
@@ -185,8 +169,8 @@ class _Builder:
         self._elements += 1
         if self._depth > DEEPEST:
             raise ScoreError(f"has elements deeper than {DEEPEST}")
-        if self._elements > MOST_ELEMENTS:
-            raise ScoreError(f"has more than {MOST_ELEMENTS} elements")
+        if self._elements > MAX_ELEMENTS:
+            raise ScoreError(f"has more than {MAX_ELEMENTS} elements")
         self._is_text = True
         # Of a million elements each string counts.
         self._tree.start(sys.intern(tag.rpartition(":")[2]), attributes)

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from yehu_server.scores.musicxml.marks import MarkWriter
+from yehu_server.scores.musicxml.marks import VALUES, MarkWriter
 from yehu_server.scores.written import layout, notated
 from yehu_server.scores.written.layout import PageBar, Piece, Placed
 from yehu_server.scores.written.notated import Grace, Note, Part, Span, Tempo, Written
@@ -24,28 +24,23 @@ HEAD = (
     b'"-//Recordare//DTD MusicXML 4.0 Partwise//EN" '
     b'"http://www.musicxml.org/dtds/partwise.dtd">\n'
 )
-MOST_DIVISIONS, DEFAULT_DIVISIONS = 16_383, 5040  # of a quarter note
-VALUES = {
-    Fraction(16): "long", Fraction(8): "breve", Fraction(4): "whole", Fraction(2): "half",
-    Fraction(1): "quarter", Fraction(1, 2): "eighth", Fraction(1, 4): "16th",
-    Fraction(1, 8): "32nd", Fraction(1, 16): "64th", Fraction(1, 32): "128th",
-}  # fmt: skip
+MAX_DIVISIONS, DEFAULT_DIVISIONS = 16_383, 5040  # of a quarter note
 DOTTED = {Fraction(1): 0, Fraction(3, 2): 1, Fraction(7, 4): 2}
 # Lengths that one sign has, the longest first, with its name and its dots.
 SIGNED = sorted(
-    ((value * factor, (name, dots)) for value, name in VALUES.items()
+    ((value * factor, (name, dots)) for name, value in VALUES.items()
      for factor, dots in DOTTED.items()), reverse=True,
 )  # fmt: skip
 SIGNS_OF = dict(SIGNED)
 LINES = {"slur": "slur", "glissando": "glissando", "portamento": "slide", "trill": "wavy-line"}
-MOST_LINES = 16  # of a kind, open at once
+MAX_LINES = 16  # of a kind, open at once
 
 
 def musicxml_of(written: Written) -> tuple[bytes, dict[str, int]]:
     """Return a score as MusicXML, and what that cannot say: names, with counts."""
     lost: Counter[str] = Counter()
     divisions = math.lcm(*_denominators(written))
-    if divisions > MOST_DIVISIONS:
+    if divisions > MAX_DIVISIONS:
         divisions = DEFAULT_DIVISIONS
         written, moved = layout.rounded(written, [divisions])
         lost["beats finer than 1/5040 of a quarter"] += moved
@@ -229,7 +224,7 @@ class _PartWriter:
 
     def _line(self, kind: str, span: Span, *, is_end: bool) -> str | None:
         """Begin or end a line; return the number that it has among those open, if there is room."""
-        open_ = self._lines.setdefault(kind, [None] * MOST_LINES)
+        open_ = self._lines.setdefault(kind, [None] * MAX_LINES)
         sought = span if is_end else None
         at = next((at for at, each in enumerate(open_) if each is sought), None)
         if at is None:
@@ -274,7 +269,8 @@ class _PartWriter:
             return True
         if isinstance(what, Span):
             if what.name in WRITTEN_CHANGES and each.is_end:
-                self._check_change(what)
+                is_read = layout.ends_as_read(what, self._part, self._written, self._end)
+                self._lost[f"how far a {what.name} goes"] += not is_read
             return what.name in notated.HAIRPINS or (
                 what.name in WRITTEN_CHANGES and not each.is_end
             )
@@ -285,14 +281,6 @@ class _PartWriter:
         if what.name != "fermata" or what.beat not in self._rests:
             self._lost[what.name] += 1
         return False
-
-    def _check_change(self, change: Span) -> None:
-        """Words end where the next tempo or change begins, or after LONGEST_CHANGE."""
-        ends = {tempo.beat for tempo in self._written.tempi}
-        ends |= {span.begin for span in self._part.spans if span.name in WRITTEN_CHANGES}
-        is_usual = change.end - change.begin == notated.LONGEST_CHANGE or change.end >= self._end
-        if change.value is not None or not (is_usual or change.end in ends):
-            self._lost[f"how far a {change.name} goes"] += 1
 
     def _direction(self, measure: Element, each: Placed, now: Fraction) -> None:
         element = SubElement(measure, "direction")

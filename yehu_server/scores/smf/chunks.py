@@ -11,35 +11,32 @@ import struct
 from dataclasses import dataclass, field
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.track import Track, decode
+from yehu_server.scores.smf.track import DamageReport, Track, decode
 
 JUNK_BYTES = 65_536  # among which a header is searched
 HEADER = b"MThd\0\0\0"  # with the length that all headers have, so that prose is none
 MAC_BYTES = 128  # of a MacBinary header
 MAX_PARTS = 131_070  # of a RIFF file
 
-UNPACK = "unpack it first"
-DECODE = "decode it first"
 # Where, which bytes, and what they begin. An archive may have a MIDI file within as it is, but
 # also several, and names.
 ARCHIVES: tuple[tuple[int, bytes, str], ...] = (
-    (0, b"\x1f\x8b", f"it is compressed by gzip; {UNPACK}"),
-    (0, b"PK\x03\x04", f"it is a zip archive; {UNPACK}"),
-    (0, b"BZh", f"it is compressed by bzip2; {UNPACK}"),
-    (0, b"\xfd7zXZ", f"it is compressed by xz; {UNPACK}"),
-    (0, b"\x28\xb5\x2f\xfd", f"it is compressed by zstd; {UNPACK}"),
-    (0, b"7z\xbc\xaf\x27\x1c", f"it is a 7z archive; {UNPACK}"),
-    (0, b"Rar!", f"it is a rar archive; {UNPACK}"),
-    (0, b"SIT!", f"it is a StuffIt archive; {UNPACK}"),
-    (0, b"StuffIt", f"it is a StuffIt archive; {UNPACK}"),
-    (2, b"-lh", f"it is an LHA archive; {UNPACK}"),
-    (257, b"ustar", f"it is a tar archive; {UNPACK}"),
+    (0, b"\x1f\x8b", "it is compressed by gzip; unpack it first"),
+    (0, b"PK\x03\x04", "it is a zip archive; unpack it first"),
+    (0, b"BZh", "it is compressed by bzip2; unpack it first"),
+    (0, b"\xfd7zXZ", "it is compressed by xz; unpack it first"),
+    (0, b"\x28\xb5\x2f\xfd", "it is compressed by zstd; unpack it first"),
+    (0, b"7z\xbc\xaf\x27\x1c", "it is a 7z archive; unpack it first"),
+    (0, b"Rar!", "it is a rar archive; unpack it first"),
+    (0, b"SIT!", "it is a StuffIt archive; unpack it first"),
+    (0, b"StuffIt", "it is a StuffIt archive; unpack it first"),
+    (2, b"-lh", "it is an LHA archive; unpack it first"),
+    (257, b"ustar", "it is a tar archive; unpack it first"),
 )
 OTHERS: tuple[tuple[int, bytes, str], ...] = (
-    (0, b"(This file must be converted with BinHex", f"it is encoded by BinHex; {DECODE}"),
-    (0, b"begin 6", f"it is encoded by uuencode; {DECODE}"),
-    (0, b"TVRoZA", f"it is encoded in base64; {DECODE}"),
+    (0, b"(This file must be converted with BinHex", "it is encoded by BinHex; decode it first"),
+    (0, b"begin 6", "it is encoded by uuencode; decode it first"),
+    (0, b"TVRoZA", "it is encoded in base64; decode it first"),
     (0, b"\0\x05\x16\x07", "it is what a Macintosh keeps beside a file; the music is in the other"),
     (0, b"SMF2CLIP", "it is a clip of MIDI 2.0"),
     (0, b"XMF_", "it is an XMF file"),

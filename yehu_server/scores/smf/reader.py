@@ -14,6 +14,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 
@@ -35,8 +36,7 @@ from yehu_server.scores.score import (
     read_score_bytes,
 )
 from yehu_server.scores.smf.chunks import Part, read_parts, unwrapped
-from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.track import SMPTE, Clock, Placed, Track, checked_division
+from yehu_server.scores.smf.track import SMPTE, Clock, DamageReport, Placed, Track, checked_division
 from yehu_server.scores.smf.tunings import retuned
 
 # Controllers: all sound off, all notes off, and changes of mode, which end notes too.
@@ -213,11 +213,8 @@ def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:
     by_tick: dict[int, int] = {}
     for tick, fifths in sorted((key for track in tracks for key in track.keys), key=itemgetter(0)):
         by_tick[tick] = by_tick.get(tick) or fifths
-    found: list[KeySignature] = []
-    for tick, fifths in by_tick.items():
-        if not found or found[-1].fifths != fifths:
-            found.append(KeySignature(Fraction(tick, division), fifths))
-    return tuple(found)
+    changes = (next(same) for _, same in groupby(by_tick.items(), key=itemgetter(1)))
+    return tuple(KeySignature(Fraction(tick, division), fifths) for tick, fifths in changes)
 
 
 def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> str:

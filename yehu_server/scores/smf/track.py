@@ -1,4 +1,4 @@
-"""Decode one track of a MIDI file to messages at ticks, and convert ticks to seconds."""
+"""Decode one track of a MIDI file to messages at ticks, convert these to seconds, note damage."""
 
 from __future__ import annotations
 
@@ -11,9 +11,46 @@ from functools import lru_cache
 
 import mido
 
-from yehu_server.scores.smf.faults import DamageReport
-from yehu_server.scores.smf.tunings import MOST as MOST_TUNINGS
-from yehu_server.scores.smf.tunings import is_tuning
+from yehu_server.errors import ScoreError
+from yehu_server.scores.smf.tunings import MAX_MESSAGES, is_tuning
+
+MAX_KINDS = 30  # listed separately; a hostile file could have one for each of its bytes
+OTHERS = "further faults of other kinds"
+
+
+class DamagedError(ScoreError):
+    """A file that could be played, with damage, where none is accepted."""
+
+
+class DamageReport:
+    """The damage found in one file, by kind; each entry says how the reader went on."""
+
+    def __init__(self) -> None:
+        self._found: dict[str, tuple[int, int]] = {}  # how often, and the first byte
+
+    def add(self, what: str, at: int) -> None:
+        """Note a fault at a byte of the file, counted from 0."""
+        if what not in self._found and len(self._found) >= MAX_KINDS:
+            what = OTHERS
+        times, first = self._found.get(what, (0, at))
+        self._found[what] = (times + 1, min(first, at))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """A line for each kind, by place in the file."""
+        by_place = sorted(self._found.items(), key=lambda fault: fault[1][1])
+        return tuple(_describe(what, times, at) for what, (times, at) in by_place)
+
+    def refuse(self) -> None:
+        """Raise DamagedError for the first fault in the file, if there is one."""
+        if self._found:
+            what, (_, at) = min(self._found.items(), key=lambda fault: fault[1][1])
+            raise DamagedError(f"{_describe(what, 1, at)}: refused by --strict")
+
+
+def _describe(what: str, times: int, at: int) -> str:
+    return f"{what}, at byte {at}" if times == 1 else f"{what}, {times} times, first at byte {at}"
+
 
 DEFAULT_TEMPO = 500_000  # microseconds a quarter note, 120 bpm
 DEFAULT_TICKS = 480  # a quarter note, where a file has 0
@@ -23,7 +60,7 @@ FILM_FRAMES = (24, 25, 29, 30)
 SMPTE = 0x8000
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
 TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE, KEY_SIGNATURE = 0x03, 0x2F, 0x51, 0x58, 0x59
-MOST_SHARPS = 7  # or flats, of a key signature
+MAX_SHARPS = 7  # or flats, of a key signature
 LONGEST_NAME = 40  # characters
 STATUS = re.compile(rb"[\x80-\xff]")
 SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
@@ -183,7 +220,7 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
                 _keep(track, tick, kind, body, at, faults)
             elif status in (SYSEX, ESCAPE):
                 body = cursor.take(cursor.number(faults))
-                if status == SYSEX and is_tuning(body) and len(track.tunings) < MOST_TUNINGS:
+                if status == SYSEX and is_tuning(body) and len(track.tunings) < MAX_MESSAGES:
                     track.tunings.append((tick, body))
             elif status > SYSEX:
                 faults.add("a system message, which no file should hold, skipped", at)
@@ -224,7 +261,7 @@ def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: Dama
             faults.add("an impossible time signature ignored", at)
     elif kind == KEY_SIGNATURE:
         sharps = int.from_bytes(body[:1], "big", signed=True)
-        if body and abs(sharps) <= MOST_SHARPS:
+        if body and abs(sharps) <= MAX_SHARPS:
             track.keys.append((tick, sharps))
         else:
             faults.add("an impossible key signature ignored", at)

@@ -11,23 +11,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from yehu_server.core.midi import registered_parameters as rpn
+from yehu_server.core.midi.registered_parameters import CENTRE
 from yehu_server.scores.score import BEND, Score, ScoreEvent, Setting
 
 UNIVERSAL = (0x7E, 0x7F)  # not in real time, in real time
 DEVICE_CONTROL, TUNING = 4, 8
 MASTER_FINE, MASTER_COARSE = 3, 4
 SCALE_1, SCALE_2 = 8, 9  # bytes for each note of the scale
-MOST_BYTES, MOST = 512, 1000  # of a message; messages of a track
-CENTRE, FINE_CENTRE = 64, 8192
-DATA, NRPN_FINE, NRPN, RPN_FINE, RPN = 6, 98, 99, 100, 101
-FINE, COARSE = 1, 2
+MAX_BYTES, MAX_MESSAGES = 512, 1000  # of a message; messages of a track
+FINE_CENTRE = 8192
 SINGLE_KEYS = "tuning of single keys by system exclusive is not supported"
 BENDS_TOO = "tuning by system exclusive is rounded to semitones on channels with pitch bends"
 
 
 def is_tuning(body: bytes) -> bool:
     """Whether the bytes after F0 are a tuning."""
-    if len(body) < 5 or len(body) > MOST_BYTES or body[0] not in UNIVERSAL:
+    if len(body) < 5 or len(body) > MAX_BYTES or body[0] not in UNIVERSAL:
         return False
     return body[2] == TUNING or (
         body[2] == DEVICE_CONTROL and body[3] in (MASTER_FINE, MASTER_COARSE)
@@ -128,12 +128,13 @@ def transposed_keys(score: Score) -> dict[int, float]:
                 found[number] = by
         elif message.type == "control_change":
             channel, value = message.channel, message.value
-            if message.control in (RPN, RPN_FINE):
-                selected.setdefault(channel, [-1, -1])[message.control == RPN_FINE] = value
-            elif message.control in (NRPN, NRPN_FINE):
+            chosen = selected.get(channel) if message.control == rpn.DATA_ENTRY else None
+            if message.control in (rpn.RPN_COARSE, rpn.RPN_FINE):
+                selected.setdefault(channel, [-1, -1])[message.control == rpn.RPN_FINE] = value
+            elif message.control in (rpn.NRPN_COARSE, rpn.NRPN_FINE):
                 selected[channel] = [-1, -1]
-            elif message.control == DATA and selected.get(channel) == [0, COARSE]:
+            elif chosen == [0, rpn.COARSE_TUNING]:
                 coarse[channel] = float(value - CENTRE)
-            elif message.control == DATA and selected.get(channel) == [0, FINE]:
+            elif chosen == [0, rpn.FINE_TUNING]:
                 fine[channel] = (value - CENTRE) / CENTRE
     return found

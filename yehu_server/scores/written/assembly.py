@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from itertools import groupby
 from typing import TypeVar
 
 from yehu_server.errors import ScoreError
@@ -16,9 +17,9 @@ from yehu_server.scores.written.voices import FINEST, RawBar, parts_of
 
 T = TypeVar("T")
 
-MOST_KINDS = 100  # of unknown marks that are named
-MOST_REPEATED, MOST_OFTEN = 10_000, 4  # notes, or times as many as written
-MOST_LEFT_OUT = 8  # places of bars that are named
+MAX_KINDS = 100  # of unknown marks that are named
+MAX_REPEATED, MAX_OFTEN = 10_000, 4  # notes, or times as many as written
+MAX_LEFT_OUT = 8  # places of bars that are named
 
 
 def assembled(
@@ -61,7 +62,7 @@ def assembled(
         tuple(_metres(longest, played)),
         tuple(Bar(begin, longest[number].number) for number, begin in played),
         title,
-        dict(unknown.most_common(MOST_KINDS)),
+        dict(unknown.most_common(MAX_KINDS)),
         tuple(lines_of_warnings),
         keys=tuple(_keys(longest, played)),
     )
@@ -69,20 +70,12 @@ def assembled(
 
 def _left_out_line(missing: Sequence[int], bars: Sequence[RawBar]) -> str:
     """A line that names bars by their numbers."""
-    runs: list[list[int]] = []
-    for at in missing:
-        if runs and runs[-1][-1] + 1 == at:
-            runs[-1].append(at)
-        else:
-            runs.append([at])
-    names = [
-        bars[run[0]].number if len(run) == 1 else f"{bars[run[0]].number} to {bars[run[-1]].number}"
-        for run in runs[:MOST_LEFT_OUT]
-    ]
-    more = "" if len(runs) <= MOST_LEFT_OUT else " and others"
+    together = groupby(enumerate(missing), key=lambda each: each[1] - each[0])
+    runs = ([bars[at].number for _, at in run] for _, run in together)
+    names = [run[0] if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in runs]
     plural = "bar is" if len(missing) == 1 else "bars are"
-    named = ", ".join(names)
-    return f"{len(missing)} {plural} not played, which repeats or jumps pass over: {named}{more}"
+    named = notated.listed(names, MAX_LEFT_OUT)
+    return f"{len(missing)} {plural} not played, which repeats or jumps pass over: {named}"
 
 
 def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Iterable[KeySignature]:
@@ -97,13 +90,13 @@ def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Ite
 def _check_amount(parts_bars: list[list[RawBar]], order: list[int]) -> None:
     """Refuse scores that are too large, or that repeats make so."""
     written = sum(len(bar.notes) for bars in parts_bars for bar in bars)
-    if written > notated.MOST_NOTES:
-        raise ScoreError(f"has more than {notated.MOST_NOTES} notes")
+    if written > notated.MAX_NOTES:
+        raise ScoreError(f"has more than {notated.MAX_NOTES} notes")
     played = sum(
         len(bars[number].notes) for bars in parts_bars for number in order if number < len(bars)
     )
-    if played > max(MOST_REPEATED, MOST_OFTEN * written):
-        raise ScoreError(f"has {played} notes with its repeats, more than {MOST_REPEATED}")
+    if played > max(MAX_REPEATED, MAX_OFTEN * written):
+        raise ScoreError(f"has {played} notes with its repeats, more than {MAX_REPEATED}")
 
 
 def _lines(parts_bars: list[list[RawBar]], number: int) -> BarLines:
@@ -136,8 +129,8 @@ def _timed(
         begin += lengths[number]
         if begin.denominator > FINEST:
             begin = begin.limit_denominator(FINEST)
-        if begin > notated.MOST_BEATS:
-            raise ScoreError(f"is longer than {notated.MOST_BEATS} quarters, with its repeats")
+        if begin > notated.MAX_BEATS:
+            raise ScoreError(f"is longer than {notated.MAX_BEATS} quarters, with its repeats")
     return played, begin
 
 

@@ -17,7 +17,7 @@ FORCED_BY = 16.0  # a forced note is at least so much louder
 REACH = Fraction(1)  # quarters after a hairpin, in which a dynamic is its aim
 SOFTEST, LOUDEST = 1.0, 127.0
 DB_PER_STEP = 18.0 / 126.0  # of velocity, over the whole range (core/player/velocity.py)
-LEAST_SWELL = 1.0
+MIN_SWELL = 1.0
 CHANGE_S = 0.3  # in which a note that is held comes to a dynamic written within it; by ear
 LEVELS = {**DYNAMICS, **{name: DYNAMICS[then] for name, (_, then) in FORCED.items() if then}}
 
@@ -118,7 +118,7 @@ class Loudness:
         One value, 0, where loudness stays the same.
         """
         least, largest = self._range(note)
-        if largest - least < LEAST_SWELL:
+        if largest - least < MIN_SWELL:
             return [0.0]
         return [max(largest - self.at(beat), 0.0) * DB_PER_STEP for beat in beats]
 

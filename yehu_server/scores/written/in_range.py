@@ -48,7 +48,7 @@ def line_of(moves: Sequence[tuple[str, str]], within: NoteRange = YEHU) -> str:
     """A line that names the parts that were moved, and their moves."""
     if not moves:
         return ""
-    text = "; ".join(f"{name} {move}" for name, move in moves)
+    text = "; ".join(f"{name} {move}".lstrip() for name, move in moves)
     return f"moved to fit {range_text(within)}: {text}"
 
 

@@ -11,7 +11,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from yehu_server.scores.written.notated import Note, Part, Sign, Span, Tempo, Written
+from yehu_server.scores.written.notated import (
+    LONGEST_CHANGE,
+    Note,
+    Part,
+    Sign,
+    Span,
+    Tempo,
+    Written,
+)
+from yehu_server.scores.written.words import WRITTEN_CHANGES
 
 LETTERS = "CDEFGAB"
 STEPS = (0, 2, 4, 5, 7, 9, 11)  # semitones of the letters above C
@@ -20,7 +29,7 @@ FIFTHS = (0, 2, 4, -1, 1, 3, 5)  # the letters on the line of fifths
 CENTRE = 2  # of a key's seven notes on that line, from its do
 TUPLETS = {3: 2, 5: 4, 7: 4}  # so many notes in the time of so many
 FINEST = 16  # of a quarter: the shortest note that is drawn
-MOST_PAGE_BARS = 20_000
+MAX_PAGE_BARS = 20_000
 METRE_UNITS = (4, 8, 16, 32)
 
 
@@ -93,7 +102,7 @@ def _begins(written: Written) -> list[tuple[Fraction, str]]:
     found: list[tuple[Fraction, str]] = []
     for at, change in enumerate(changes):
         beat, end = change, min(last, changes[at + 1]) if at + 1 < len(changes) else last
-        while beat < end and len(found) < MOST_PAGE_BARS:
+        while beat < end and len(found) < MAX_PAGE_BARS:
             found.append((beat, str(len(found) + 1)))
             beat += metres[change]
     return found
@@ -240,6 +249,17 @@ def rounded(written: Written, allowed: Sequence[int]) -> tuple[Written, int]:
     tempi = tuple(Tempo(near(each.beat), each.quarters_per_minute) for each in written.tempi)
     bars = tuple(replace(bar, beat=near(bar.beat)) for bar in written.bars)
     return replace(written, parts=tuple(parts), tempi=tempi, bars=bars), len(moved)
+
+
+def ends_as_read(change: Span, part: Part, written: Written, end: Fraction) -> bool:
+    """Whether the words of a change of tempo, such as rit., say where it ends.
+
+    That is where the next tempo or change begins, after LONGEST_CHANGE, or at the end of the score.
+    """
+    ends = {tempo.beat for tempo in written.tempi}
+    ends |= {span.begin for span in part.spans if span.name in WRITTEN_CHANGES}
+    is_usual = change.end - change.begin == LONGEST_CHANGE or change.end >= end
+    return change.value is None and (is_usual or change.end in ends)
 
 
 @dataclass(frozen=True)

@@ -8,21 +8,21 @@ notes since the beginning, exact, with all repeats unfolded. Pitches are MIDI no
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
 from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 
 # Bounds for readers: what a file may ask for, repeats unfolded.
-MOST_BYTES = 16 << 20  # of a file
-MOST_NOTES = 100_000
-MOST_BEATS = 400_000  # quarter notes; a day at 278 a minute
-MOST_PARTS = 64
+MAX_BYTES = 16 << 20  # of a file
+MAX_NOTES = 100_000
+MAX_BEATS = 400_000  # quarter notes; a day at 278 a minute
+MAX_PARTS = 64
 LOWEST_TEMPO, HIGHEST_TEMPO = 5.0, 1000.0  # quarter notes a minute
 HAIRPINS = ("crescendo", "diminuendo")
 DEFAULT_TEMPO = 100.0  # where none is written
-MOST_NAMED = 12  # marks that were not understood
+MAX_NAMED = 12  # marks that were not understood
 LONGEST_CHANGE = Fraction(8)  # quarters of a change of tempo, where nothing written ends it
 
 # Marks on notes, and the meaning of their values; None stands for the default value.
@@ -120,6 +120,12 @@ SIGNS: Mapping[str, str] = {
 def times(text: str, count: int) -> str:
     """A warning, and the number of its occurrences."""
     return f"{text} ({count} times)" if count > 1 else text
+
+
+def listed(names: Sequence[str], most: int) -> str:
+    """Names for a line: the first of them, and the number of others."""
+    more = [f"{len(names) - most} others"] if len(names) > most else []
+    return ", ".join([*names[:most], *more])
 
 
 @dataclass(frozen=True)
@@ -260,9 +266,7 @@ class Written:
     def not_understood(self) -> list[str]:
         """A line with all marks that were not understood; none where all were."""
         named = [times(mark, count) for mark, count in self.unknown.items()]
-        if len(named) > MOST_NAMED:
-            named[MOST_NAMED:] = [f"and {len(named) - MOST_NAMED} others"]
-        return [f"not understood: {', '.join(named)}"] if named else []
+        return [f"not understood: {listed(named, MAX_NAMED)}"] if named else []
 
     @property
     def names(self) -> tuple[str, ...]:

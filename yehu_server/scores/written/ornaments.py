@@ -19,7 +19,7 @@ TAP_S = 0.075  # of a mordent's other note, and of each note of a turn
 TURN_SHARE = 0.2  # of a note, at most, for each note of a turn
 TRILL_S = 0.145  # from one tap to the next: some seven a second
 TRILL_LAST_S = 0.07  # of the plain note that ends it
-MOST_TAPS = 1000
+MAX_TAPS = 1000
 WHOLE, HALF = 2.0, 1.0  # default intervals: of trills and mordents above, and below
 WIDEST = 12.0  # semitones, that a hand reaches
 # By ear: a slide away takes so long, or so much of its note, and goes so far (semitones).
@@ -27,7 +27,7 @@ SLIDE_S, SLIDE_SHARE, AWAY = 0.13, 0.4, 2.0
 SLIDE_STEPS = 12  # lines that its curve is made of
 STEP_S = 0.01  # between points; the finger takes 8 ms for each
 LAST_S = 0.002
-MOST_POINTS = 3000
+MAX_POINTS = 3000
 WIDEST_BEND = 24.0  # semitones
 Curve = list[tuple[float, float]]
 
@@ -111,7 +111,7 @@ def _trill(held: Touch, step: float) -> list[Touch]:
     """Taps at a steady pace from the own note, with a plain end where there is time for one."""
     length_s = held.end_s - held.begin_s
     room_s = length_s - TRILL_LAST_S
-    count = min(max(int(room_s / TRILL_S), 1), MOST_TAPS)
+    count = min(max(int(room_s / TRILL_S), 1), MAX_TAPS)
     each_s = min(room_s / count if room_s >= TRILL_S else 0.6 * length_s, 1.5 * TRILL_S)
     return [
         Touch(
@@ -134,7 +134,7 @@ def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:
         return []
     if points[0][0] > begin_s:
         points.insert(0, (begin_s, points[0][1]))
-    count = min(max(int(length_s / STEP_S), 1), MOST_POINTS)
+    count = min(max(int(length_s / STEP_S), 1), MAX_POINTS)
     curve: Curve = []
     for number in range(count + 1):
         at_s = begin_s + length_s * number / count

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import accumulate, pairwise
+from itertools import pairwise
 
 from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.written.mark_settings import DOWN, UP, Active, is_plucked
@@ -134,10 +134,6 @@ def _slid_to(one: Played, other: Played, slide: str) -> Played:
     return replace(other, begin_s=other.begin_s - slide_s, slide_s=slide_s)
 
 
-def _farther(one: Span, other: Span) -> Span:
-    return other if other.end >= one.end else one
-
-
 class _Over:
     """Spans of one kind, found by the notes under them."""
 
@@ -145,7 +141,10 @@ class _Over:
         own = sorted((span for span in spans if span.name == name), key=lambda span: span.begin)
         self._begins = [span.begin for span in own]
         # The span that reaches farthest, of those up to each: enough to answer for any note.
-        self._farthest = list(accumulate(own, _farther))
+        self._farthest: list[Span] = []
+        for span in own:
+            last = self._farthest[-1:] or [span]
+            self._farthest.append(max(span, *last, key=lambda each: each.end))
 
     def joins(self, one: Note, other: Note) -> bool:
         """Whether a span is over both of two notes that follow each other."""

@@ -38,11 +38,11 @@ NOTE_OFF, NOTE_ON, CONTROL = 0x80, 0x90, 0xB0
 EXPRESSION, LEGATO_PEDAL = 11, 68
 PORTAMENTO, PORTAMENTO_TIME = "/playing/portamento", "/playing/portamento_time"
 SWELL_S = 0.02  # between steps of a swell
-MOST_STEPS = 2000  # of a swell within a note
+MAX_STEPS = 2000  # of a swell within a note
 AFTER_S = 0.005  # after a note's beginning, when its finger is on the way
 LAST_S = 0.3  # after the last note, when all is put back
 HIGHEST_KEY = 127
-MOST_EVENTS = 300_000
+MAX_EVENTS = 300_000
 # Order at one time.
 OFF, SET, ON, AFTER = range(4)
 
@@ -95,19 +95,10 @@ def leading_notes(written: Written, number: int) -> list[ScoreNote]:
 
     One under a fermata is as long as that has it.
     """
-    clock = WrittenClock(written)
+    at = WrittenClock(written).seconds
     return [
-        ScoreNote(
-            -1,
-            -1,
-            0,
-            _key_of(note.pitch),
-            0,
-            clock.seconds(note.beat),
-            clock.seconds(note.end),
-            float(note.beat),
-        )
-        for note in written.parts[number].notes
+        ScoreNote(-1, -1, 0, _key_of(n.pitch), 0, at(n.beat), at(n.end), float(n.beat))
+        for n in written.parts[number].notes
     ]
 
 
@@ -204,7 +195,7 @@ class _Performer:
         note = played.note
         begin, length = float(note.beat), float(note.length)
         length_s = self._clock.seconds(note.end) - self._clock.seconds(note.beat)
-        count = min(max(int(length_s / SWELL_S), 2), MOST_STEPS)
+        count = min(max(int(length_s / SWELL_S), 2), MAX_STEPS)
         beats = [begin + length * step / count for step in range(count)]
         for step, below_db in enumerate(self._loudness.below_db(note, beats)):
             time_s = self._clock.seconds(beats[step]) if step else played.begin_s
@@ -236,8 +227,8 @@ class _Performer:
 
     def _add(self, time_s: float, order: int, beat: float, message: mido.Message | Setting) -> None:
         self._number += 1
-        if self._number > MOST_EVENTS:
-            raise ScoreError(f"asks for more than {MOST_EVENTS} moves of bow and fingers")
+        if self._number > MAX_EVENTS:
+            raise ScoreError(f"asks for more than {MAX_EVENTS} moves of bow and fingers")
         event = ScoreEvent(time_s, message, beat, track=self._channel + 1)
         self._timed.append((time_s, order, self._number, event))
 

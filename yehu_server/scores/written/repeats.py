@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 
 from yehu_server.errors import ScoreError
 
-MOST_BARS = 10_000  # as played
-MOST_TIMES = 100
+MAX_BARS = 10_000  # as played
+MAX_TIMES = 100
 ENDS = {"fine", "dacapo", "dalsegno"}  # after which something else begins
 
 
@@ -70,7 +70,7 @@ def order_of(bars: Sequence[BarLines]) -> list[int]:
     After da capo and dal segno no repeat is taken, and the last of several endings, up to the bar
     from which was jumped. Each jump is taken once. Where Fine ends the music before its last bars
     were played, it goes on with those, as with another movement. Raises ScoreError where that would
-    be more than MOST_BARS.
+    be more than MAX_BARS.
     """
     return _Unfolder(bars, _passages(bars)).order()
 
@@ -97,7 +97,7 @@ def _passages(bars: Sequence[BarLines]) -> list[_Passage]:
             passage = _Passage(first, group[-1].last, max(max(e.passes) for e in group), group)
             if len(group) == 1:
                 passage.times += 1  # the last time without it
-            passage.times = min(passage.times, MOST_TIMES)
+            passage.times = min(passage.times, MAX_TIMES)
             found.append(passage)
             outer.sign = None
             open_.append((passage, 0))
@@ -113,7 +113,7 @@ def _passages(bars: Sequence[BarLines]) -> list[_Passage]:
         ends = bool(open_) and at == open_[-1][0].endings[open_[-1][1]].last
         if bar.times and (level.sign is not None or not (ends or len(levels) > 1)):
             first = level.base if level.sign is None else level.sign
-            found.append(_Passage(first, at, min(bar.times, MOST_TIMES)))
+            found.append(_Passage(first, at, min(bar.times, MAX_TIMES)))
             level.base, level.sign = at + 1, None
         elif bar.jumps & ENDS and level.sign is None and len(levels) == 1:
             level.base = at + 1  # what follows, such as a trio, has repeats of its own
@@ -227,8 +227,8 @@ class _Unfolder:
                         self._passes.pop(id(passage), None)
                     continue
             order.append(at)
-            if len(order) > MOST_BARS:
-                raise ScoreError(f"has more than {MOST_BARS} bars, with its repeats")
+            if len(order) > MAX_BARS:
+                raise ScoreError(f"has more than {MAX_BARS} bars, with its repeats")
             at = self._after(at)
         return order
 

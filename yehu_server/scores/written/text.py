@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.scores.written.in_range import default_parts, moved_part
-from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Tempo, Written
+from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Written
 
 ARTICULATED = {float(number): row.name for number, row in enumerate(ARTICULATIONS)}
-MOST_TEMPI = 20  # that the head shows
+MAX_TEMPI = 20  # that the head shows
 
 
 def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
@@ -27,12 +29,12 @@ def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
     yield from written.remarks
     for key in written.keys:
         yield f"bar {written.place(key.beat)[0]}: 1={key.do}"
-    tempi = _tempi(written)
-    for tempo in tempi[:MOST_TEMPI]:
-        yield f"bar {written.place(tempo.beat)[0]}: {tempo.quarters_per_minute:g} quarters a minute"
-    if len(tempi) > MOST_TEMPI:
-        yield f"and {len(tempi) - MOST_TEMPI} more changes of tempo"
-    for beat, quarters in _metres(written):
+    tempi = _changes((each.beat, each.quarters_per_minute) for each in written.tempi)
+    for beat, quarters in tempi[:MAX_TEMPI]:
+        yield f"bar {written.place(beat)[0]}: {quarters:g} quarters a minute"
+    if len(tempi) > MAX_TEMPI:
+        yield f"and {len(tempi) - MAX_TEMPI} more changes of tempo"
+    for beat, quarters in _changes((Fraction(each.beat), each.quarters) for each in written.metres):
         bar = written.place(beat)[0]
         yield f"bar {bar}: {quarters:g} quarter{'' if quarters == 1.0 else 's'} in a bar"
     played = next(iter(default_parts(written, within)), None)
@@ -58,22 +60,10 @@ def _summary(part: Part, within: NoteRange, *, is_played: bool) -> str:
     return f"{text}; {moved}" if moved else text
 
 
-def _metres(written: Written) -> list[tuple[Fraction, float]]:
-    """The time signatures that change something, by beats; of several at a beat the last."""
-    holding = {Fraction(metre.beat): metre.quarters for metre in written.metres}
-    shown: list[tuple[Fraction, float]] = []
-    for beat, quarters in sorted(holding.items()):
-        if not shown or shown[-1][1] != quarters:
-            shown.append((beat, quarters))
-    return shown
-
-
-def _tempi(written: Written) -> list[Tempo]:
-    shown: list[Tempo] = []
-    for tempo in written.tempi:
-        if not shown or tempo.quarters_per_minute != shown[-1].quarters_per_minute:
-            shown.append(tempo)
-    return shown
+def _changes(values: Iterable[tuple[Fraction, float]]) -> list[tuple[Fraction, float]]:
+    """The values, by beats, that are not as the one before; of several at a beat the last."""
+    held = sorted(dict(values).items())
+    return [next(same) for _, same in groupby(held, key=itemgetter(1))]
 
 
 def _notes(written: Written, part: Part) -> Iterator[str]:

@@ -18,7 +18,7 @@ FINEST = 1 << 24  # the smallest part of a quarter note is this one
 # what is printed, and figures over words.
 RANKS = {"words": 0, "figures": 1, "playback": 2}
 SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
-MOST_VOICES = 16  # of a part; no music has more
+MAX_VOICES = 16  # of a part; no music has more
 LONGEST_HAIRPIN = Fraction(32)  # in words, where no sign ends it
 
 
@@ -217,7 +217,7 @@ def parts_of(
     voices: dict[tuple[str, str], Voice] = {}
     for bar in bars:
         for note in bar.notes:
-            if len(voices) < MOST_VOICES:
+            if len(voices) < MAX_VOICES:
                 voices.setdefault(note.voice, Voice())
     directions = Directions()
     for number, begin in played:

@@ -28,7 +28,7 @@ ROWS_OF_A_YEHU = 18
 
 
 @dataclass(frozen=True)
-class Calibration:
+class NoteTables:
     """The measurements that tune an instrument.
 
     Attributes

@@ -15,7 +15,7 @@ const MOST_COMMANDS = 1e6;
 const MOST_A_SECOND = 5000; // commands: two hands come to some hundreds
 const LONGEST_S = 24 * 3600;
 const EVERY = 60; // ms
-const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW } = facts.kinds;
+const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW, RELEASE } = facts.kinds;
 /** Kinds of commands, by their numbers. */
 export const KINDS = Object.keys(facts.kinds);
 const OF_SLOT = TABLE.filter(({ slot }) => slot !== null).map(({ address }) => address);
@@ -98,7 +98,8 @@ function lineOf(command) {
   if (address !== null) return [...line, address, value, ...(kind === EXPRESS ? [] : [other])];
   if (kind === BEGIN || kind === END) return [...line, index, value, other];
   if (kind === SLIDE || kind === STOP) return [...line, value];
-  return kind === DRAW ? [...line, value, other] : line;
+  if (kind === DRAW) return [...line, value, other];
+  return kind === RELEASE && value !== 0 ? [...line, value] : line;
 }
 
 /**
@@ -163,6 +164,34 @@ export function checked(performance) {
       throw new RangeError("too many commands at a time");
   });
   return performance;
+}
+
+/**
+ * What is played of a performance that came from elsewhere: its notes and gestures. What it would hold would
+ * outlive it, its ramps go past the player, and what is a server's own (`isServers`), its instrument, room and
+ * output, is its owner's.
+ * @param {Performance} performance
+ * @param {boolean} isServers whether a server plays it
+ * @returns {{played: Performance, leftOut: number}} and the number of settings that are left out
+ */
+export function notesAndGestures({ values, commands, ...rest }, isServers) {
+  /** @param {import('./playing/table.js').Param} param */
+  const isFree = ({ isOwners }) => !(isServers && isOwners);
+  const played = {
+    ...rest,
+    values: Object.fromEntries(
+      Object.entries(values).filter(([address]) => isFree(find(address))),
+    ),
+    commands: commands.filter(
+      ({ kind, index }) =>
+        kind !== HOLD && kind !== RAMP && (!OF_PARAMETERS.includes(kind) || isFree(TABLE[index])),
+    ),
+  };
+  // A value that it has by itself brings nothing.
+  const brought = Object.keys(values).filter((address) => values[address] !== find(address).default);
+  const kept = brought.filter((address) => address in played.values);
+  const leftOut = commands.length - played.commands.length + brought.length - kept.length;
+  return { played, leftOut };
 }
 
 /**

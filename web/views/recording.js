@@ -14,7 +14,7 @@ import {
   toggle,
   words,
 } from "../elements.js";
-import { CaptureWriter, Replayer, fileOf, readCapture } from "../capture.js";
+import { CaptureWriter, Replayer, fileOf, notesAndGestures, readCapture } from "../capture.js";
 import { linkOf, readLink } from "../link.js";
 import { onLanguage, translate } from "../i18n.js";
 
@@ -106,10 +106,18 @@ function performances({ instrument, hands }) {
     else input.click();
   });
 
-  /** @param {import('../capture.js').Performance} performance */
-  function play(performance) {
+  /**
+   * @param {import('../capture.js').Performance} performance
+   * @param {string} name what is said of it
+   */
+  function play(performance, name = "") {
     replayer?.stop();
-    const one = new Replayer(instrument, performance);
+    const isServers = ["remote", "listening"].includes(instrument.sound?.status.backend ?? "");
+    const { played, leftOut } = notesAndGestures(performance, isServers);
+    const left = leftOut > 0 ? translate("keep.left", { count: leftOut }) : "";
+    playing = [name, left].filter((text) => text !== "").join(" · ");
+    word.textContent = playing;
+    const one = new Replayer(instrument, played);
     replayer = one;
     load.set(true);
     one.addEventListener("end", () => {
@@ -148,11 +156,9 @@ function performances({ instrument, hands }) {
     try {
       const read = await readCapture(file);
       await instrument.start();
-      play(read);
       const { players } = read;
-      playing =
-        players > 1 ? translate("keep.one", { name: file.name, count: players }) : file.name;
-      word.textContent = playing;
+      const { name } = file;
+      play(read, players > 1 ? translate("keep.one", { name, count: players }) : name);
     } catch {
       word.textContent = translate("keep.wrong", { name: file.name });
     }

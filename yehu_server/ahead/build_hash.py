@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from functools import cache
 from pathlib import Path
 
@@ -27,25 +28,31 @@ CUSTOM = 0
 
 
 def with_section(module: bytes, text: str) -> bytes:
-    """A module with a custom section that holds a text."""
-    body = bytes((len(NAME),)) + NAME + text.encode()
+    """A module with a custom section at its end that holds a text, and a checksum of the rest."""
+    body = bytes((len(NAME),)) + NAME + f"{text} {_checksum(module, text)}".encode()
     return module + bytes((CUSTOM,)) + _leb128(len(body)) + body
 
 
 def section_of(module: bytes) -> str:
-    """The text of a module's custom section; empty where there is none, or no module."""
+    """The text of a module's custom section; empty where there is none, or a byte is wrong."""
     at = len(PREAMBLE)
     if not module.startswith(PREAMBLE):
         return ""
-    found = ""
+    text, checksum, begin = "", "", 0
     while at < len(module):
-        kind = module[at]
+        kind, start = module[at], at
         size, at = _read_leb128(module, at + 1)
         body = module[at : at + size]
         if kind == CUSTOM and body[1 : 1 + len(NAME)] == NAME and body[:1] == bytes((len(NAME),)):
-            found = body[1 + len(NAME) :].decode("utf-8", "replace")
+            text, _, checksum = body[1 + len(NAME) :].decode("utf-8", "replace").rpartition(" ")
+            begin = start
         at += size
-    return found
+    is_whole = at == len(module) and checksum == _checksum(module[:begin], text)
+    return text if is_whole else ""
+
+
+def _checksum(module: bytes, text: str) -> str:
+    return hashlib.blake2b(module + text.encode(), digest_size=16).hexdigest()
 
 
 def _leb128(number: int) -> bytes:

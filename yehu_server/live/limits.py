@@ -45,5 +45,6 @@ WEB_IDLE_S = 15.0  # before an idle connection is closed
 WEB_BODY, WEB_FRAME = 1 << 16, 1 << 16
 PAGE_UNSENT = 1 << 16  # waiting for one page
 PAGE_EVENTS = 1024  # of a message
-PAGE_EVENTS_A_SECOND, PAGE_EVENTS_AT_ONCE = 2000.0, 4000.0
+PAGE_EVENTS_A_SECOND, PAGE_EVENTS_AT_ONCE = 2000.0, 1024.0  # of one; of all pages together
 PINS_AT_ONCE, PIN_AGAIN_S = 10, 10.0  # wrong ones of a host, and one more in this time
+PINS_OF_ALL_AT_ONCE, PINS_OF_ALL_A_SECOND = 100, 0.2  # of all hosts: a million take two months

@@ -55,7 +55,9 @@ def as_line(command: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one 
         return [*line, index, value, int(other)]
     if kind in (commands.SLIDE, commands.STOP):
         return [*line, value]
-    return [*line, value, other] if kind == commands.DRAW else line
+    if kind == commands.DRAW:
+        return [*line, value, other]
+    return [*line, value] if value != 0.0 else line  # of a release, what is held stays so
 
 
 def from_line(line: list[Any]) -> CommandRow:
@@ -88,6 +90,8 @@ def from_line(line: list[Any]) -> CommandRow:
     elif kind == commands.DRAW:
         speed, force = values
         value, other = _setting("/bow/speed", speed)[1], _setting("/bow/force", force)[1]
+    elif kind == commands.RELEASE and len(values) == 1:
+        value = _within(values[0], 0.0, 1.0)
     elif values:
         raise ValueError("more values than it takes")
     return frame, kind, index, value, other

@@ -17,6 +17,10 @@ class TokenBucket:
         self._at_once = self._left = at_once
         self._updated = math.inf  # never yet
 
+    def resize(self, at_once: float) -> None:
+        """Hold other many tokens."""
+        self._at_once = at_once
+
     def left(self, now: float) -> float:
         """The number of tokens at a time."""
         gained = self._per_s * max(now - self._updated, 0.0)

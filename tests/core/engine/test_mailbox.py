@@ -26,12 +26,15 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.mailbox import (
     APPLIED_AT_ONCE,
+    BUDGET_PER_FRAME,
     HEAP,
     LINE,
-    LIVE_BUDGET,
+    LIVE_INTAKE,
     MIDI_INPUTS,
     PAGES,
+    QUEUE_STARTS,
     RING,
+    SERVER,
     SMALL_RING,
     SOUND_INPUT,
 )
@@ -229,7 +232,7 @@ def test_a_full_ring_drops_and_counts_what_comes_and_keeps_what_it_has(make):
         for number in range(RING + 10):
             assert post_numbered(instrument, number) == (number < RING)
         assert instrument.dropped_events == dropped
-        run(instrument, 2 * RING // (LIVE_BUDGET // 64) + 1000)
+        run(instrument, RING // BUDGET_PER_FRAME + 1000)
         np.testing.assert_array_equal(numbers(instrument.applied_commands()), np.arange(RING))
 
 
@@ -357,12 +360,12 @@ def test_a_live_instrument_takes_in_so_many_commands_for_each_64_frames():
     instrument = live()
     for number in range(RING):
         post_numbered(instrument, number, FAR)
-    for waiting in (LIVE_BUDGET, 2 * LIVE_BUDGET):
+    for waiting in (LIVE_INTAKE, 2 * LIVE_INTAKE):
         run(instrument, 64)
         assert instrument.meters()["waiting"] == waiting
-        room = sum(post_numbered(instrument, number, FAR) for number in range(2 * LIVE_BUDGET))
-        assert room == LIVE_BUDGET
-    assert instrument.dropped_events == 2 * LIVE_BUDGET
+        room = sum(post_numbered(instrument, number, FAR) for number in range(2 * LIVE_INTAKE))
+        assert room == LIVE_INTAKE
+    assert instrument.dropped_events == 2 * LIVE_INTAKE
 
 
 def test_a_command_of_no_kind_or_for_no_parameter_changes_nothing():
@@ -429,7 +432,7 @@ def test_a_command_that_came_while_the_process_died_comes_once_and_no_other_is_l
     # and the one that moves may be nowhere. It is still counted, or no longer.
     for lost in (0, 1, 7, MANY - 1):
         ensemble, expected = waiting_commands()
-        instrument, heap = ensemble.first, ensemble.first._rig["events"][0]
+        instrument, heap = ensemble.first, ensemble.first._rig["events"][0, QUEUE_STARTS[SERVER] :]
         number = int(heap["order"][lost])
         heap[lost] = heap[MANY // 2]
         died(ensemble)

@@ -14,10 +14,10 @@ globalThis.location = { origin: "http://a", pathname: "/", search: "" };
 globalThis.AudioWorkletNode ??= class {};
 const web = pathToFileURL(`${resolve(process.env.WEB ?? "web")}/`);
 const { default: facts } = await import(new URL("facts.js", web).href);
-const { checked, readCapture } = await import(new URL("capture.js", web).href);
+const { checked, notesAndGestures, readCapture } = await import(new URL("capture.js", web).href);
 const { linkOf, readLink } = await import(new URL("link.js", web).href);
 
-const { BEGIN, EXPRESS, END } = facts.kinds;
+const { RAMP, WRITE, HOLD, BEGIN, EXPRESS, END } = facts.kinds;
 const RATE = 1000;
 
 function performance(commands) {
@@ -49,6 +49,23 @@ test("a link brings what was played", async () => {
   ]);
   const read = await readLink(new URL(await linkOf(played)).hash);
   assert.deepEqual(read.commands, played.commands);
+});
+
+test("of what is brought notes and gestures are played, and what is left out is counted", () => {
+  const index = (address) => facts.parameters.findIndex((param) => param.address === address);
+  const of = (kind, address) => ({ frame: 0, kind, index: index(address), value: 0.5, other: 0 });
+  const [vibrato, room] = ["/playing/vibrato", "/room/size"];
+  const settings = [of(RAMP, vibrato), of(HOLD, vibrato), of(WRITE, room), of(EXPRESS, room)];
+  const gestures = [of(WRITE, vibrato), of(EXPRESS, vibrato), ...notes(4, 10)];
+  const brought = performance([...settings, ...gestures]);
+  brought.values = { [vibrato]: 10, [room]: 30, "/output/gain": 0 };
+  const { played, leftOut } = notesAndGestures(brought, true);
+  assert.deepEqual(played.commands, gestures);
+  assert.deepEqual(Object.keys(played.values), [vibrato]);
+  assert.equal(leftOut, settings.length + 1); // the gain is what it is by itself
+  const here = notesAndGestures(brought, false);
+  assert.deepEqual(here.played.commands, [...settings.slice(2), ...gestures]);
+  assert.deepEqual(here.played.values, brought.values);
 });
 
 test("what is no performance is refused, soon", async () => {

@@ -12,16 +12,27 @@ from aiohttp.test_utils import TestClient, TestServer
 from wire import StillTime
 
 from yehu_server.core.midi.events import LEAVE, RELEASE_ALL
-from yehu_server.core.player.commands import BEGIN, DRAW, EXPRESS, HOLD, STOP, WRITE
+from yehu_server.core.player.commands import (
+    BEGIN,
+    DRAW,
+    EXPRESS,
+    HOLD,
+    KINDS,
+    RELEASE,
+    SLIDE,
+    STOP,
+    WRITE,
+)
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live import limits
 from yehu_server.live.page import guests as admitting
 from yehu_server.live.page import sockets as serving
 from yehu_server.live.page.guests import Admission, Guests
-from yehu_server.live.page.players import permitted
-from yehu_server.live.page.sockets import NO_PIN, PageSockets
+from yehu_server.live.page.players import OWNER_ONLY, permitted
+from yehu_server.live.page.sockets import NO_PIN, SETTINGS, PageSockets
+from yehu_server.params.table import TABLE
 
-HOST, ELSEWHERE = "127.0.0.1", "192.0.2.7"
+HOST, ELSEWHERE, HOME = "127.0.0.1", "192.0.2.7", "192.0.2.9"
 
 
 # ---------------------------------------------------------------- the PIN
@@ -48,7 +59,30 @@ def test_however_many_machines_guess_few_are_remembered() -> None:
     admission = Admission(Guests("play", "123456"))
     for number in range(2 * limits.PEERS):
         assert admission.role_of(f"198.51.{number // 256}.{number % 256}", "000000") is None
-    assert len(admission._tries) <= limits.PEERS + 1
+    assert len(admission._tries) <= limits.PEERS
+
+
+def test_however_many_machines_guess_few_guesses_are_looked_at(monkeypatch) -> None:
+    clock = StillTime(1000.0)
+    monkeypatch.setattr(admitting, "time", clock)
+    admission = Admission(Guests("play", "123456"))
+    assert admission.role_of(HOME, "123456") == "play"
+    hosts = [f"198.51.{n // 250}.{n % 250}" for n in range(2 * limits.PEERS)]
+    for host in hosts[: limits.PINS_OF_ALL_AT_ONCE]:
+        assert admission.role_of(host, "000000") is None
+    assert [host for host in hosts if admission.role_of(host, "123456")] == []
+    assert admission.role_of(HOME, "123456") == "play"  # it knew the PIN before
+    clock.now += 1.1 / limits.PINS_OF_ALL_A_SECOND
+    assert admission.role_of(hosts[-1], "123456") == "play"
+
+
+def test_the_guesses_of_a_host_are_counted_while_others_guess() -> None:
+    admission = Admission(Guests("play", "123456"))
+    for _ in range(limits.PINS_AT_ONCE):
+        assert admission.role_of(ELSEWHERE, "000000") is None
+    for number in range(limits.PEERS - 1):
+        admission.role_of(f"198.51.{number // 256}.{number % 256}", "000000")
+    assert admission._tries[ELSEWHERE].left(0.0) < 1.0
 
 
 # ---------------------------------------------------------------- roles
@@ -58,6 +92,7 @@ COMMANDS = {
     "its value": (EXPRESS, INDEX["/playing/pressure"], 0.4),
     "a controller": (WRITE, INDEX["/playing/vibrato"], 20.0),
     "a bow": (DRAW, 0, 0.2),
+    "its release": (RELEASE, 0, 0.0),
     "the room": (WRITE, INDEX["/room/size"], 20.0),
     "the body": (WRITE, INDEX["/body/gain"], 1.0),
     "the output": (EXPRESS, INDEX["/output/gain"], 6.0),
@@ -68,13 +103,35 @@ COMMANDS = {
 
 @pytest.mark.parametrize(
     ("role", "names"),
-    [("own", list(COMMANDS)), ("play", list(COMMANDS)[:4]), ("listen", [])],
+    [
+        ("own", [name for name in COMMANDS if name != "a held value"]),
+        ("play", list(COMMANDS)[:5]),
+        ("listen", []),
+    ],
 )
 def test_each_role_may_command_its_own(role, names) -> None:
     commands = np.array([[-1.0, *command, 0.0] for command in COMMANDS.values()])
     found, ends = permitted(role, commands)
-    assert found.tolist() == [[-1.0, *COMMANDS[name], 0.0] for name in names]
+    assert found[:, :3].tolist() == [[-1.0, *COMMANDS[name][:2]] for name in names]
     assert ends == (role == "play")
+
+
+def test_a_guest_changes_nothing_that_the_owner_holds() -> None:
+    # Every kind of command, for every parameter where it names one, owned or not.
+    may = {"write", "express", "begin", "end", "draw", "slide", "lift", "release"}
+    owned = [INDEX["/bow/force"], INDEX["/finger/2/position"], INDEX["/playing/vibrato"]]
+    wrong = []
+    for kind, name in enumerate(KINDS[1:], 1):
+        for held in ([], owned):
+            for index in range(len(TABLE) if kind in SETTINGS else 1):
+                found, _ = permitted("play", np.array([[-1.0, kind, index, 0.0, 0.0]]), held)
+                is_owned = kind in SETTINGS and index in {*held, *OWNER_ONLY}
+                is_owned |= bool(held) and kind in (DRAW, SLIDE)
+                if (len(found) == 1) != (name in may and not is_owned):
+                    wrong.append((name, TABLE[index].address, held))
+    assert not wrong
+    release, _ = permitted("play", np.array([[-1.0, RELEASE, 0.0, 0.0, 0.0]]))
+    assert release[0, 3] == 1.0  # what is held stays so
 
 
 class View:
@@ -94,9 +151,18 @@ class View:
     def load(self) -> tuple[float, int]:
         return 0.0, 0
 
-    def post(self, _rig: int, _frame: int, kind: int, *_: float, **__: float) -> bool:
+    def post(self, _rig: int, _page: int, _frame: int, kind: int, *_: float) -> int:
         self.posted.append(kind)
-        return True
+        return len(self.posted)
+
+    def taken(self, _rig: int) -> int:
+        return len(self.posted)
+
+    def room(self, _rig: int, _page: int) -> int:
+        return 100
+
+    def held(self, _rig: int) -> list[int]:
+        return []
 
 
 Command = tuple[int, int, float]

@@ -46,8 +46,9 @@ def player(instrument) -> Player:
 def pages(player) -> PagePlayers:
     """The pages of a server with one part, whose messages arrive now."""
 
-    def post(_rig, frame, kind, index=0, value=0.0, other=0.0) -> bool:
-        return player.instrument.post(kind, frame=frame, index=index, value=value, other=other)
+    def post(_rig, _page, frame, kind, index=0, value=0.0, other=0.0) -> int:
+        player.instrument.post(kind, frame=frame, index=index, value=value, other=other)
+        return player.instrument.posted
 
     seen = SimpleNamespace(rate=48000.0, frame_of=lambda _ns: player.instrument.frame, post=post)
     return PagePlayers(seen, [0])

@@ -13,7 +13,8 @@ from aiohttp import web
 from live.page.browser import drive
 
 from yehu_server.ahead import build
-from yehu_server.ahead.build_hash import build_hash, with_section
+from yehu_server.ahead.build import page_module
+from yehu_server.ahead.build_hash import build_hash, section_of, with_section
 from yehu_server.live.page import module_process, site
 from yehu_server.live.page.site import Site, write_page
 
@@ -65,7 +66,8 @@ def test_a_shipped_module_of_these_sources_goes_with_the_page_of_now(
     (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {build_hash()}"))
     write_page(tmp_path / "page")
     assert build_hash() in (tmp_path / "page" / "facts.js").read_text("utf-8")
-    assert (tmp_path / "page" / "yehu.wasm").read_bytes().endswith(build_hash().encode())
+    module = (tmp_path / "page" / "yehu.wasm").read_bytes()
+    assert section_of(module).split() == ["9.9", build_hash()]
     assert b"the page of then" not in (tmp_path / "page" / "index.html").read_bytes()
     assert not caplog.records
 
@@ -73,6 +75,26 @@ def test_a_shipped_module_of_these_sources_goes_with_the_page_of_now(
 def test_a_server_offers_a_shipped_module_of_these_sources(shipped, monkeypatch) -> None:
     (shipped / "yehu.wasm").write_bytes(with_section(EMPTY, f"9.9 {build_hash()}"))
     assert reported(monkeypatch)[-1] == {"event": "module", "path": str(shipped / "yehu.wasm")}
+
+
+def test_a_module_with_any_bit_wrong_is_none_of_these_sources(shipped, tmp_path) -> None:
+    kept = tmp_path / f"page-{build_hash()}" / "yehu.wasm"
+    kept.parent.mkdir()
+    code = bytes((10, 40, *range(40)))  # a section of code
+    whole = with_section(EMPTY + code, f"9.9 {build_hash()}")
+    for path in (kept, shipped / "yehu.wasm"):
+        path.write_bytes(whole)
+        assert page_module() == path
+        taken = []
+        for bit in range(8 * len(whole)):
+            flipped = bytearray(whole)
+            flipped[bit // 8] ^= 1 << bit % 8
+            path.write_bytes(flipped)
+            taken += [bit] if build._found(kept.parent) == path else []
+        for size in range(len(whole)):
+            path.write_bytes(whole[:size])
+            taken += [size] if build._found(kept.parent) == path else []
+        assert not taken, path
 
 
 # ---------------------------------------------------------------- while it is made

@@ -3,6 +3,10 @@
 The events of a part lie with its first instrument. Each is interpreted once, before the frames
 that it is for are computed (``midi.interpret_events``); its commands go to the heaps of those who
 play.
+
+Whatever is sent, the work for a frame is bounded: events beyond a budget of commands
+(``mailbox.ready_at``) come at a later frame, MIDI's before the server's, and these before those of
+pages, which take turns. Each has a queue of its own.
 """
 
 from __future__ import annotations
@@ -16,8 +20,16 @@ from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.engine.atomics import at, load_acquire, record_at, store_release
 from yehu_server.core.engine.mailbox import (
     HEAP,
+    KIND_BITS,
     MAIL,
     MIDI_INPUTS,
+    PAGE_QUEUE,
+    PAGE_QUEUES,
+    PAGE_RESERVE,
+    PAGES,
+    QUEUE_SIZES,
+    QUEUE_STARTS,
+    QUEUES,
     ROOM,
     SERVER,
     SOUND_INPUT,
@@ -25,6 +37,8 @@ from yehu_server.core.engine.mailbox import (
     WRITERS,
     pop,
     push,
+    ready_at,
+    spend,
 )
 from yehu_server.core.engine.rig import (
     CONTROLS_AT,
@@ -43,16 +57,18 @@ from yehu_server.core.engine.rig import (
     count_parts,
 )
 from yehu_server.core.engine.telemetry import METERS
-from yehu_server.core.midi.events import FINGER_ON, NOTE_OFF, NOTE_ON, RELEASE_ALL
+from yehu_server.core.midi.events import FINGER_ON, LEAVE, NOTE_OFF, NOTE_ON, RELEASE_ALL
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import MIDI, NONE
-from yehu_server.core.player.commands import BEGIN, COMMAND, END
+from yehu_server.core.player.commands import BEGIN, COMMAND, END, LIFT
 
 NOTHING = -1  # the kind of an event that was cancelled
 # Frames from now that an event may be: the server plays whole scores ahead, other writers play
 # now, so that what is nonsense of theirs fills the heap for seconds at most.
 FARTHEST, FARTHEST_AHEAD = 1 << 40, 1 << 20
+WAITING_BYTES = WAITING.itemsize
+SCANNED = 64  # waiting events that are looked at for the price of a command
 
 
 @native
@@ -82,20 +98,31 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
     rig = at(rigs, part * RIG_BYTES)
     mail = record_at(rig, MAIL_AT, MAIL)
     m = record_at(rig, MIDI_AT, MIDI)
-    events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     drain(rigs, rig, mail, now)
-    while mail.pending_events > 0 and events[0].command.frame < end:
+    while mail.pending_events > 0:
+        frame = max(now, first_frame(mail), ready_at(mail.interpreting, mail.at_once))
+        if frame >= end:
+            break
         if not have_room(rigs, part, m.players):
-            return int(max(events[0].command.frame, now))
-        is_full = mail.pending_events == HEAP
-        event, order = events[0].command, events[0].order
-        frame, kind, index = max(event.frame, now), event.kind, event.index
-        value, other = event.value, event.other
-        pop(events, mail.pending_events)
-        mail.pending_events -= 1
-        if kind in (NOTE_OFF, END, RELEASE_ALL):
-            cancel(events, mail.pending_events, m, order, kind, index, value)
+            return int(frame)
+        number = next_queue(mail, frame)
+        queue = events_of(rig, number)
+        is_full = mail.pending[number] == len(queue)
+        event, order = queue[0].command, queue[0].order
+        kind, index, value, other = event.kind, event.index, event.value, event.other
+        pop(queue, mail.pending[number])
+        count_event(mail, queue, number, -1)
+        scanned = 0
+        if kind in (NOTE_OFF, END):
+            if order <= mail.behind[number] and find_key(m, index, value) == NONE:
+                scanned = cancel(queue, mail.pending[number], order, kind, index, value)
+        elif kind == RELEASE_ALL:
+            for each in range(QUEUES):
+                if mail.pending[each] > 0:
+                    waiting = events_of(rig, each)
+                    scanned += cancel(waiting, mail.pending[each], order, kind, index, value)
         interpret(m, at(rig, TABLES_AT), frame, kind, index, value, other)
+        spend(mail.interpreting, frame, max(1, m.commands) + scanned // SCANNED)
         hand_over(rigs, part, m)
         if is_full:
             drain(rigs, rig, mail, now)
@@ -103,13 +130,52 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
 
 
 @compiled_with_aliasing
+def events_of(rig: Any, number: int) -> Any:
+    """The entries of a queue of events."""
+    start = EVENTS_AT + QUEUE_STARTS[number] * WAITING_BYTES
+    return carray(at(rig, start), (QUEUE_SIZES[number],), WAITING)
+
+
+@compiled_with_aliasing
+def count_event(mail: Any, queue: Any, number: int, more: int) -> None:
+    """Count an event that came into a queue (1) or left it (-1)."""
+    mail.pending[number] += more
+    mail.pending_events += more
+    mail.first[number] = queue[0].command.frame
+
+
+@compiled_with_aliasing
+def first_frame(mail: Any) -> int:
+    """The frame of the first event of all."""
+    frame = FARTHEST
+    for number in range(QUEUES):
+        if mail.pending[number] > 0:
+            frame = min(frame, mail.first[number])
+    return int(frame)
+
+
+@compiled_with_aliasing
+def next_queue(mail: Any, frame: int) -> int:
+    """The queue whose first event is next, of those that have one due at a frame."""
+    for number in range(PAGES):
+        if mail.pending[number] > 0 and mail.first[number] <= frame:
+            return number
+    page = mail.served
+    for _ in range(PAGE_QUEUES):
+        page = (page + 1) % PAGE_QUEUES
+        if mail.pending[PAGES + page] > 0 and mail.first[PAGES + page] <= frame:
+            break
+    mail.served = page
+    return int(PAGES + page)
+
+
+@compiled_with_aliasing
 def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
-    """Move posted events to the heap of a part, up to the budget of a callback.
+    """Move posted events to the queues of a part, so many from each ring.
 
     A writer that lost its count, or laps the reader, loses what it wrote; and so does one that
-    writes frames too far from now, which would fill the heap for ever. Both are counted.
+    writes frames too far from now, and a page whose queue is full. All are counted.
     """
-    events = carray(at(rig, EVENTS_AT), (HEAP,), WAITING)
     for writer in range(WRITERS):
         farthest = FARTHEST if writer == SERVER else FARTHEST_AHEAD
         size = RING_SIZES[writer]
@@ -119,31 +185,37 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
         if posted < drained or posted - drained > size:
             mail.dropped[writer, 0] += 1
             drained = posted
-        last = min(posted, drained + mail.budget)
-        while drained < last and mail.pending_events < HEAP:
+        last = min(posted, drained + mail.intake)
+        while drained < last and (writer == PAGES or mail.pending[writer] < QUEUE_SIZES[writer]):
             event = ring[drained & (size - 1)]
-            frame = event.frame
+            frame, kind, number = event.frame, event.kind, writer
             if writer in (MIDI_INPUTS, SOUND_INPUT):
                 frame = frame_of_arrival(rigs, mail, frame)
+            elif writer == PAGES:
+                number += (kind >> KIND_BITS) & (PAGE_QUEUES - 1)
+                kind &= (1 << KIND_BITS) - 1
             drained += 1
-            if not now - FARTHEST < frame < now + farthest:
+            is_near = now - FARTHEST < frame < now + farthest
+            if not is_near or (writer == PAGES and not takes(mail.pending[number], kind)):
                 mail.dropped[writer, 0] += 1
                 continue
             mail.late[writer] += 1 if frame < now else 0
             mail.most_late[writer] = max(mail.most_late[writer], now - frame)
-            push(
-                events,
-                mail.pending_events,
-                frame,
-                event.kind,
-                event.index,
-                event.value,
-                event.other,
-                mail.ordered,
-            )
-            mail.pending_events += 1
+            queue, pending = events_of(rig, number), mail.pending[number]
+            if pending > 0 and frame < mail.latest[number]:
+                mail.behind[number] = mail.ordered
+            mail.latest[number] = max(mail.latest[number], frame) if pending > 0 else frame
+            push(queue, pending, frame, kind, event.index, event.value, event.other, mail.ordered)
+            count_event(mail, queue, number, 1)
             mail.ordered += 1
         store_release(rig, DRAINED_AT + writer * CURSOR_BYTES, drained)
+
+
+@compiled_with_aliasing
+def takes(pending: int, kind: int) -> bool:
+    """Whether a page's queue takes an event; the last entries are for those that end what plays."""
+    is_end = kind in (LEAVE, LIFT, RELEASE_ALL)
+    return bool(pending < (PAGE_QUEUE if is_end else PAGE_QUEUE - PAGE_RESERVE))
 
 
 @compiled_with_aliasing
@@ -196,21 +268,23 @@ def hand_over(rigs: Any, part: int, m: Any) -> None:
 
 
 @compiled_with_aliasing
-def cancel(
-    events: Any, coming: int, m: Any, order: int, kind: int, channel: int, key: float
-) -> None:
+def cancel(events: Any, pending: int, order: int, kind: int, channel: int, key: float) -> int:
     """Cancel scheduled note-ons whose note-off arrives before they begin.
 
     Parameters
     ----------
     order : int
         Of the event that ends it: what was posted later stays.
+
+    Returns
+    -------
+    scanned : int
+        Number of events that were looked at: all of the queue.
     """
-    if kind != RELEASE_ALL and find_key(m, channel, key) != NONE:
-        return
-    for n in range(coming):
+    for n in range(pending):
         event = events[n].command
         if event.kind not in (NOTE_ON, FINGER_ON, BEGIN) or events[n].order > order:
             continue
         if kind == RELEASE_ALL or (event.index == channel and event.value == key):
             event.kind = NOTHING
+    return pending

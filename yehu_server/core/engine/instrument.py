@@ -11,7 +11,15 @@ from yehu_server.core.controls.record import prepare_controls, settle
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine import native
 from yehu_server.core.engine.event_dispatch import interpret_events
-from yehu_server.core.engine.mailbox import LIVE_BUDGET, RING, SERVER, repair
+from yehu_server.core.engine.mailbox import (
+    LIVE_BUDGET,
+    LIVE_INTAKE,
+    RING,
+    SERVER,
+    UNLIMITED,
+    repair,
+    repair_queues,
+)
 from yehu_server.core.engine.output import prepare_output, rest_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
@@ -77,7 +85,8 @@ class Instrument:
         self._address = self._rig.ctypes.data
         self._clock = self._address
         self._rig["model"] = kernel.prepare(spec.quantities, spec.rate, MAX_FINGERS)
-        self._rig["mail"]["budget"] = LIVE_BUDGET if is_live else RING
+        self._rig["mail"]["intake"] = LIVE_INTAKE if is_live else RING
+        self._rig["mail"]["at_once"] = LIVE_BUDGET if is_live else UNLIMITED
         if self._stage is not None:
             self._rig["parts"][0, 0] = 1
             prepare_stage(self._stage[0], spec.rate, channels, has_room=False)
@@ -114,9 +123,10 @@ class Instrument:
         if self._stage is not None:
             rest_stage(self._stage[0])
         mail = rig["mail"]
-        kept = mail["budget"].copy(), mail["reporting"].copy(), mail["delay"].copy()
+        kept = {name: mail[name].copy() for name in ("intake", "at_once", "reporting", "delay")}
         mail[:] = np.zeros(1, mail.dtype)
-        mail["budget"], mail["reporting"], mail["delay"] = kept
+        for name, number in kept.items():
+            mail[name] = number
         self.play_alone()
         rig["meters"] = np.zeros(1, METERS)
         rig["meters"]["rate"], rig["meters"]["pitch"] = self.rate, np.nan
@@ -335,8 +345,9 @@ class Instrument:
         """Put meters and waiting commands in order again, after a process was killed."""
         self._rig["version"][0, 0] += self._rig["version"][0, 0] % 2
         self._rig["meters"]["running"] = 0
-        repair(self._rig["events"][0], self._rig["mail"][0], "pending_events")
-        repair(self._rig["heap"][0], self._rig["mail"][0], "waiting")
+        mail = self._rig["mail"][0]
+        repair_queues(self._rig["events"][0], mail)
+        mail["waiting"] = repair(self._rig["heap"][0], int(mail["waiting"]))
 
     def skip_to(self, frame: int) -> None:
         """Go on at a later frame. Nothing may compute meanwhile."""

@@ -1,9 +1,10 @@
 """Lock-free queues of events to the instrument, and of reports of applied commands. Compiled.
 
 Whoever plays posts events (``midi.events``) to a ring of its own; the audio side moves them to a
-heap in the order of their frames, interprets them, and reports applied commands in a further ring.
-Each ring has one writer and one reader. Each moves only its own cursor, after it has written or
-read the entry, so neither waits. Events for a full ring are dropped and counted.
+queue of the writer, a heap in the order of their frames, interprets them, and reports applied
+commands in a further ring. Each ring has one writer and one reader. Each moves only its own cursor,
+after it has written or read the entry, so neither waits. Events for a full ring, or for a full
+queue of a page, are dropped and counted.
 """
 
 from __future__ import annotations
@@ -21,16 +22,27 @@ RING = 1 << 16  # events of the server, or of the program that plays; powers of 
 SMALL_RING = 1 << 12  # of each other writer
 HEAP = 1 << 14
 ROOM = 1 << 12  # entries that a heap of commands has room for before another event is interpreted
-# Limits on the work of a callback: events moved to the heap for each 64 frames, and commands
-# applied at one frame. The rest waits for the next.
-LIVE_BUDGET, APPLIED_AT_ONCE = 1 << 8, 64
-# The writers of events. Those of inputs have the time of their arrival (ns) in place of a frame.
-SERVER, MIDI_INPUTS, PAGES, SOUND_INPUT = range(4)
+APPLIED_AT_ONCE = 64  # commands at one frame; the rest waits for the next
+# What a live instrument does at once: events moved from each ring for each 64 frames, and commands
+# (`is_ready`). Without limit offline.
+LIVE_INTAKE, LIVE_BUDGET, BUDGET_PER_FRAME = 1 << 10, 1 << 8, 3
+UNLIMITED = 1 << 40
+# The writers of events, the most urgent first. Those of inputs have the time of their arrival (ns)
+# in place of a frame; pages, their number above the KIND_BITS of a kind.
+MIDI_INPUTS, SERVER, SOUND_INPUT, PAGES = range(4)
 WRITERS = 4
+KIND_BITS = 8
+# Events to come: a queue of each writer, and one of each page, so that none fills another's.
+PAGE_QUEUES, PAGE_QUEUE = 64, 1 << 8
+PAGE_RESERVE = 8  # entries for the ends of what a page played
+QUEUES = PAGES + PAGE_QUEUES
+QUEUE_SIZES = np.array([SMALL_RING, HEAP, SMALL_RING, *[PAGE_QUEUE] * PAGE_QUEUES])
+QUEUE_STARTS = np.cumsum(QUEUE_SIZES) - QUEUE_SIZES
 
 WAITING = np.dtype([("command", COMMAND), ("order", np.int64)])
 LINE = 8  # words of a cache line: the two sides' cursors lie in different ones
 
+BUDGET = np.dtype([("used", np.int64), ("frame", np.int64)], align=True)  # at that frame
 MAIL = np.dtype(
     [
         # Number of events posted; written by each writer, as the next.
@@ -48,29 +60,69 @@ MAIL = np.dtype(
         ("arrived", np.int64),  # frame of the latest message
         ("applied", np.int64),
         ("ordered", np.int64),  # number of events and commands that came into a heap
-        ("pending_events", np.int64),  # entries in the heap of events, and in that of commands
-        ("waiting", np.int64),
+        ("pending", np.int64, QUEUES),  # events in each queue, and the frame of the first
+        ("first", np.int64, QUEUES),
+        ("latest", np.int64, QUEUES),  # frame of any event since it was empty
+        ("behind", np.int64, QUEUES),  # order of the last one posted after a later frame's
+        ("pending_events", np.int64),  # events in all queues
+        ("served", np.int64),  # page whose event was interpreted last
+        ("waiting", np.int64),  # entries in the heap of commands
         ("reporting", np.int64),
-        ("budget", np.int64),  # events moved to the heap at a time
+        ("intake", np.int64),  # events moved from each ring at a time
+        ("at_once", np.int64),  # commands at once, by either budget
+        ("interpreting", BUDGET),
+        ("applying", BUDGET),
     ],
     align=True,
 )
 
 
-def repair(heap: Array, mail: Any, count: str) -> None:
+def repair(heap: Array, count: int) -> int:
     """Put a heap in order again that a process left while it moved an entry, in place.
 
-    Parameters
-    ----------
-    count : str
-        Field of `mail` that has the number of its entries.
+    Returns the number of its entries, of which there were `count`.
     """
-    entries = heap[: int(mail[count])]
+    entries = heap[:count]
     _, first = np.unique(entries["order"], return_index=True)  # one may be there twice
     entries = entries[first]
     entries = entries[np.lexsort((entries["order"], entries["command"]["frame"]))]
     heap[: len(entries)] = entries
-    mail[count] = len(entries)
+    return len(entries)
+
+
+def repair_queues(events: Array, mail: Any) -> None:
+    """Put all queues of events in order again; see `repair`."""
+    for queue in range(QUEUES):
+        start = QUEUE_STARTS[queue]
+        heap = events[start : start + QUEUE_SIZES[queue]]
+        mail["pending"][queue] = repair(heap, int(mail["pending"][queue]))
+        mail["first"][queue] = heap["command"]["frame"][0]
+    mail["pending_events"] = mail["pending"].sum()
+
+
+@compiled
+def is_ready(budget: Any, at_once: int, frame: int) -> bool:
+    """Whether a budget has something left at a frame; see `ready_at`."""
+    return bool(budget.used - BUDGET_PER_FRAME * (frame - budget.frame) < at_once)
+
+
+@compiled
+def ready_at(budget: Any, at_once: int) -> int:
+    """The first frame at which a budget has something left.
+
+    It is that of a token bucket counted in commands, which one event may overdraw: `at_once`, and
+    BUDGET_PER_FRAME more each frame. As it counts frames, what it defers does not depend on the
+    size of blocks.
+    """
+    over = budget.used - at_once + 1
+    return int(budget.frame + max(0, (over + BUDGET_PER_FRAME - 1) // BUDGET_PER_FRAME))
+
+
+@compiled
+def spend(budget: Any, frame: int, commands: int) -> None:
+    """Take commands from a budget at a frame, no earlier than those before."""
+    budget.used = max(0, budget.used - BUDGET_PER_FRAME * (frame - budget.frame)) + commands
+    budget.frame = frame
 
 
 @compiled

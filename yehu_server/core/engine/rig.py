@@ -13,7 +13,15 @@ from yehu_server.compile.jit import compiled_with_aliasing
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.engine.atomics import at
-from yehu_server.core.engine.mailbox import HEAP, LINE, MAIL, RING, SMALL_RING, WAITING
+from yehu_server.core.engine.mailbox import (
+    HEAP,
+    LINE,
+    MAIL,
+    QUEUE_SIZES,
+    RING,
+    SMALL_RING,
+    WAITING,
+)
 from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.record import MIDI
@@ -43,11 +51,11 @@ RIG = lined_up(
         ("taped", np.int64, LINE),
         # Of the first instrument of a part: what the part is sent, by writer; what is to come;
         # the record of the part, and its tables.
-        ("ring", COMMAND, RING),
         ("midi_ring", COMMAND, SMALL_RING),
-        ("page_ring", COMMAND, SMALL_RING),
+        ("ring", COMMAND, RING),
         ("sound_ring", COMMAND, SMALL_RING),
-        ("events", WAITING, HEAP),
+        ("page_ring", COMMAND, SMALL_RING),
+        ("events", WAITING, QUEUE_SIZES.sum()),
         ("midi", MIDI),
         ("tables", TABLES, SLOTS),
         ("heap", WAITING, HEAP),  # commands to come
@@ -79,8 +87,8 @@ OUTPUT_AT, MAIL_AT, METERS_AT = _offset("output"), _offset("mail"), _offset("met
 MODEL_CONTROLS_AT, PROBES_AT = _offset("output", "controls"), _offset("output", "probes")
 SOUNDED_AT = _offset("output", "sounded")
 VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _offset("taped")
-RINGS_AT = np.array([_offset(f"{of}ring") for of in ("", "midi_", "page_", "sound_")])  # by writer
-RING_SIZES = np.array([RING, SMALL_RING, SMALL_RING, SMALL_RING])
+RINGS_AT = np.array([_offset(f"{of}ring") for of in ("midi_", "", "sound_", "page_")])  # by writer
+RING_SIZES = np.array([SMALL_RING, RING, SMALL_RING, SMALL_RING])
 EVENTS_AT, MIDI_AT, TABLES_AT = _offset("events"), _offset("midi"), _offset("tables")
 HEAP_AT, REPORTS_AT = _offset("heap"), _offset("reports")
 SEAT_AT = _offset("seat")

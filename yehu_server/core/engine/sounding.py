@@ -36,7 +36,9 @@ from yehu_server.core.engine.mailbox import (
     RING,
     WAITING,
     copy_command,
+    is_ready,
     pop,
+    spend,
 )
 from yehu_server.core.engine.output import (
     NOT_SILENCED,
@@ -86,6 +88,9 @@ def apply_due(rig: Any, mail: Any, p: Any, c: Any) -> None:
     for _ in range(APPLIED_AT_ONCE):
         if mail.waiting == 0 or heap[0].command.frame > c.frame:
             return
+        if not is_ready(mail.applying, mail.at_once, c.frame):
+            return
+        spend(mail.applying, c.frame, 1)
         command = heap[0].command
         apply(p, c, c.frame, command.kind, command.index, command.value, command.other)
         if mail.reporting != 0:

@@ -177,7 +177,8 @@ def record_command(m: Any, kind: int, index: int, value: float, other: float) ->
         if other == 0.0:
             forget_listed(m)
     elif kind == RELEASE:
-        release_held(m)
+        if value == 0.0:
+            release_held(m)
     elif kind == STOP and value != 0.0:
         hold_nothing(m)
 

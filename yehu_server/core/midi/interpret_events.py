@@ -160,7 +160,7 @@ def command(m: Any, frame: int, kind: int, index: int, value: float, other: floa
     elif kind == SLIDE:
         slide_players(m, frame, value)
     else:
-        if kind == RELEASE:
+        if kind == RELEASE and value == 0.0:
             release_held(m)
         elif kind == STOP and value != 0.0:
             hold_nothing(m)

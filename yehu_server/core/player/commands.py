@@ -12,7 +12,7 @@
 | DRAW | | bow speed (m/s) | bow force (N) |
 | LIFT | | | |
 | STOP | | 1: even where a note sounds | |
-| RELEASE | | | |
+| RELEASE | | 1: what is held stays so | |
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ def apply(
     elif kind == STOP:
         notes.stop_sound(p, c, value != 0.0)
     elif kind == RELEASE:
-        release(p)
+        release(p, value != 0.0)
         p.is_direct = 0
     elif 0 <= index < PARAMETER_COUNT:
         if kind in (WRITE, HOLD):

@@ -86,8 +86,10 @@ def take_all_back(p: Any) -> None:
 
 
 @compiled_exactly
-def release(p: Any) -> None:
-    """Own all parameters again, held ones too."""
+def release(p: Any, keep_held: bool) -> None:
+    """Own all parameters again, held ones too, unless they are kept."""
     take_all_back(p)
+    if keep_held:
+        return
     for index in range(PARAMETER_COUNT):
         p.is_held[index] = 0

@@ -42,13 +42,19 @@ class PartCalls(GroupCalls):
     def set(self, call: Request, address: str) -> None:
         """Set a parameter."""
         (value,) = call.numbers(1)
-        self._player.set(address, value, frame=call.frame)
+        self._set(call, address, value)
         self._echo(call.peer, [address])
+
+    def _set(self, call: Request, address: str, value: float) -> None:
+        kept = self._player.value(address) if self._player.keeps(address) else None
+        accepted = self._player.set(address, value, frame=call.frame)
+        if kept is not None and accepted == kept != value:
+            raise RefusedError(f"is held at {kept:g} by --set; {self._prefix}/release frees it")
 
     def set_unit(self, call: Request, param: Param) -> None:
         """Set a parameter by 0 to 1 of its range."""
         (unit,) = call.numbers(1)
-        self._player.set(param.address, param.from_unit(unit), frame=call.frame)
+        self._set(call, param.address, param.from_unit(unit))
         self._echo(call.peer, [param.address + UNIT])
 
     def move(self, call: Request, address: str) -> None:

@@ -5,14 +5,23 @@ from __future__ import annotations
 import hmac
 import secrets
 import time
+from collections import OrderedDict
 from dataclasses import dataclass, field
+from typing import Any
 
 from yehu_server.live import limits
 from yehu_server.live.network import is_here, plain
+from yehu_server.params.spec import Param
 from yehu_server.util.token_bucket import TokenBucket
 
 LISTEN, PLAY, OWN = ROLES = ("listen", "play", "own")
 DIGITS = 6
+
+
+def is_owners(param: Param) -> bool:
+    """Whether a parameter is of the instrument, the room or the output, and so no player's."""
+    prefixes = ("/body/", "/string/", "/engine/", "/output/")
+    return param.is_shared or param.address.startswith(prefixes)
 
 
 def new_pin() -> str:
@@ -36,7 +45,9 @@ class Admission:
 
     def __init__(self, guests: Guests | None) -> None:
         self._guests = guests
-        self._tries: dict[str, TokenBucket] = {}
+        self._tries: OrderedDict[str, TokenBucket] = OrderedDict()  # the latest host last
+        self._all_tries = TokenBucket(limits.PINS_OF_ALL_A_SECOND, limits.PINS_OF_ALL_AT_ONCE)
+        self._admitted: OrderedDict[str, None] = OrderedDict()
 
     def role_of(self, host: str, pin: str) -> str | None:
         """The role of a host (an IP address) that sends a PIN or none; None where it is refused."""
@@ -44,15 +55,26 @@ class Admission:
             return OWN
         if not pin:
             return None
-        if len(self._tries) > limits.PEERS:
-            self._tries.clear()
+        host, now = plain(host), time.monotonic()
         tries = self._tries.setdefault(
-            plain(host), TokenBucket(1.0 / limits.PIN_AGAIN_S, limits.PINS_AT_ONCE)
+            host, TokenBucket(1.0 / limits.PIN_AGAIN_S, limits.PINS_AT_ONCE)
         )
-        now = time.monotonic()
-        if tries.left(now) < 1.0:
+        remember_latest(self._tries, host)
+        # A host that had the PIN before is not kept out by what others guess.
+        buckets = [tries] if host in self._admitted else [tries, self._all_tries]
+        if any(bucket.left(now) < 1.0 for bucket in buckets):
             return None
         if hmac.compare_digest(pin.encode(errors="replace"), self._guests.pin.encode()):
+            self._admitted[host] = None
+            remember_latest(self._admitted, host)
             return self._guests.role
-        tries.spend(1.0)
+        for bucket in buckets:
+            bucket.spend(1.0)
         return None
+
+
+def remember_latest(hosts: OrderedDict[str, Any], latest: str) -> None:
+    """Make a host the latest one, and forget the oldest where they are too many."""
+    hosts.move_to_end(latest)
+    while len(hosts) > limits.PEERS:
+        hosts.popitem(last=False)

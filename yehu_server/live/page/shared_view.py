@@ -11,7 +11,13 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine import native
-from yehu_server.core.engine.mailbox import PAGES
+from yehu_server.core.engine.mailbox import (
+    KIND_BITS,
+    PAGE_QUEUE,
+    PAGE_QUEUES,
+    PAGE_RESERVE,
+    PAGES,
+)
 from yehu_server.core.engine.rig import RIG, RIG_BYTES
 from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.engine.telemetry import METERS
@@ -55,15 +61,34 @@ class SharedView:
     def post(
         self,
         rig: int,
+        page: int,
         frame: int,
         kind: int,
         index: int = 0,
         value: float = 0.0,
         other: float = 0.0,
-    ) -> bool:
-        """Post an event (``midi.events``) to the part that an instrument is the first of."""
+    ) -> int:
+        """Post an event (``midi.events``) of a page to the part whose first instrument this is.
+
+        Returns its number among all that pages posted to the part.
+        """
         address = self._address + rig * RIG_BYTES
-        return bool(native.post_from.call(address, PAGES, frame, kind, index, value, other))
+        kind += page << KIND_BITS
+        native.post_from.call(address, PAGES, frame, kind, index, value, other)
+        return int(self._rigs["mail"]["posted"][rig, PAGES, 0])
+
+    def taken(self, rig: int) -> int:
+        """Number of events of pages that the audio callback has moved to their queues."""
+        return int(self._rigs["mail"]["drained"][rig, PAGES, 0])
+
+    def room(self, rig: int, page: int) -> int:
+        """Number of events that the queue of a page has room for."""
+        pending = self._rigs["mail"]["pending"][rig, PAGES + page % PAGE_QUEUES]
+        return PAGE_QUEUE - PAGE_RESERVE - int(pending)
+
+    def held(self, rig: int) -> Array:
+        """Indices of the parameters of a part that the owner holds."""
+        return np.flatnonzero(self._rigs["midi"]["is_held"][rig])
 
     def snapshot(self, rig: int = 0, own: Mapping[int, float] = _NOTHING) -> bytes:
         """A snapshot of an instrument (``engine.snapshot``) and, twice, the values of parameters.

@@ -34,6 +34,7 @@ COMMAND = 5  # numbers: frame or NOW, kind, index, value, other
 NOW = -1.0
 SETTINGS = (WRITE, HOLD, EXPRESS)  # their index is that of a parameter
 SOUND_S, STATUS_S = 0.001, 1.0
+AT_ONCE, ROOM_S = 16, 0.001  # commands posted in one go; between two looks for room
 MESSAGE_BYTES = 8 * COMMAND * limits.PAGE_EVENTS
 HEARTBEAT_S, CLOSING_S = 10.0, 0.3
 # Close codes: against the rules; the PIN is missing or wrong; there is no such part.
@@ -148,9 +149,13 @@ class PageSockets:
 
     async def _pass_on(self, page: Page, commands: Any) -> None:
         """Post commands, and send them to other pages of this part that sound; a fast one waits."""
-        count = len(commands)
-        commands, ends = permitted(page.role, commands)
-        self._players.post(page.number, page.part, commands, time.monotonic_ns())
+        count, arrived_ns = len(commands), time.monotonic_ns()
+        held = self._view.held(self._rigs[page.part])
+        commands, ends = permitted(page.role, commands, held)
+        for begin in range(0, len(commands), AT_ONCE):
+            some = commands[begin : begin + AT_ONCE]
+            await self._wait(page, len(some))
+            self._players.post(page.number, page.part, some, arrived_ns)
         if ends:
             self._players.leave(page.number, time.monotonic_ns())
         own = self._own.get(page.part, {})
@@ -161,9 +166,17 @@ class PageSockets:
         for other in self._pages.values():
             if len(commands) and other is not page and other.sounds and other.part == page.part:
                 write(other.transport, frame, limits.PAGE_UNSENT)
-        page.bucket.spend(count)
-        if (left := page.bucket.left(time.monotonic())) < 0.0:
-            await asyncio.sleep(-left / limits.PAGE_EVENTS_A_SECOND)
+        page.bucket.spend(count - len(commands))  # of those refused
+
+    async def _wait(self, page: Page, commands: int) -> None:
+        """Wait until a page may post more commands, so that others have their turn."""
+        page.bucket.resize(max(AT_ONCE, limits.PAGE_EVENTS_AT_ONCE / len(self._pages)))
+        page.bucket.spend(commands)
+        while not page.transport.is_closing():
+            left = page.bucket.left(time.monotonic())
+            if left >= 0.0 and self._players.has_room(page.number, page.part, commands):
+                return
+            await asyncio.sleep(max(ROOM_S, -left / limits.PAGE_EVENTS_A_SECOND))
 
     # -- sending to all ----------------------------------------------------------------------
 
@@ -258,7 +271,7 @@ async def every(period_s: float, is_wanted: asyncio.Event) -> AsyncIterator[None
 
 async def _open(request: web.Request) -> web.WebSocketResponse:
     socket = web.WebSocketResponse(
-        timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=MESSAGE_BYTES, compress=False
+        timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=MESSAGE_BYTES + 1, compress=False
     )
     await socket.prepare(request)
     return socket

@@ -1,0 +1,204 @@
+"""Whatever is sent, the work for a frame is bounded, and no writer makes another late."""
+
+import numpy as np
+import pytest
+import sound
+
+from yehu_server.core.engine import native
+from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.mailbox import (
+    BUDGET_PER_FRAME,
+    KIND_BITS,
+    LIVE_BUDGET,
+    MIDI_INPUTS,
+    PAGE_QUEUE,
+    PAGE_RESERVE,
+    PAGES,
+    SERVER,
+    SMALL_RING,
+)
+from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.midi.events import LEAVE, MESSAGE, NOTE_ON, RELEASE_ALL, START
+from yehu_server.core.midi.packing import packed
+from yehu_server.core.player.commands import BEGIN, DRAW, END, EXPRESS, LIFT, SLIDE, WRITE
+from yehu_server.core.player.parameter_indices import INDEX
+
+RATE, BLOCK = 22050, 64
+VOLUME = INDEX["/playing/volume"]
+DUE = 1000  # a frame to come
+MARK = 55.0  # the pitch of notes that are looked for
+
+
+def live() -> Instrument:
+    instrument = Instrument(InstrumentSpec(RATE), is_live=True)
+    instrument.report_commands()
+    return instrument
+
+
+def post(instrument: Instrument, writer: int, frame: int, kind: int, *numbers: float) -> None:
+    index, value, other = (*numbers, 0, 0.0, 0.0)[:3]
+    native.post_from.call(
+        instrument.address, writer, frame, kind, int(index), float(value), float(other)
+    )
+
+
+def post_of_page(instrument: Instrument, page: int, frame: int, kind: int, *numbers: float) -> None:
+    post(instrument, PAGES, frame, kind + (page << KIND_BITS), *numbers)
+
+
+def play(instrument: Instrument, frames: int, block: int = BLOCK) -> list[tuple]:
+    """Play on; return the commands that were applied: frame, kind, index, value, other."""
+    applied = []
+    for begin in range(0, frames, block):
+        sound.run(instrument, min(block, frames - begin), block=block)
+        applied += instrument.applied_commands().tolist()
+    return applied
+
+
+def fill_queues(instrument: Instrument, pages: int, due: int = DUE) -> int:
+    """Fill the queues of pages with ends of notes that nobody plays; return how many."""
+    for n in range(PAGE_QUEUE - PAGE_RESERVE):
+        for page in range(pages):
+            post_of_page(instrument, page, due, END, 7, 60.0 + n % 12)
+        if n % 16 == 0:  # or the ring is full
+            play(instrument, BLOCK)
+    play(instrument, 4 * BLOCK)
+    assert instrument.frame < due
+    assert instrument.dropped_events == 0
+    return pages * (PAGE_QUEUE - PAGE_RESERVE)
+
+
+def frames_of(applied: list[tuple], kind: int, value: float) -> list[int]:
+    return [frame for frame, its, _, its_value, _ in applied if (its, its_value) == (kind, value)]
+
+
+def test_events_of_one_frame_come_so_many_at_once_and_so_many_a_frame_later() -> None:
+    instrument = live()
+    count = fill_queues(instrument, 12, due := 4000)
+    applied = play(instrument, due + count - instrument.frame)
+    frames = np.array([frame for frame, *_ in applied])
+    assert len(frames) == count
+    assert frames[0] == due
+    assert (frames == due).sum() <= LIVE_BUDGET
+    for window in (1, 7, 64, 128):
+        most = max(((frames >= at) & (frames < at + window)).sum() for at in frames)
+        assert most <= LIVE_BUDGET + BUDGET_PER_FRAME * window, window
+    assert frames[-1] <= due + count / BUDGET_PER_FRAME
+
+
+@pytest.mark.parametrize("block", [1, 33, 1000])
+def test_what_is_deferred_does_not_depend_on_the_size_of_blocks(block: int) -> None:
+    found = []
+    for size in (BLOCK, block):
+        instrument = live()
+        fill_queues(instrument, 3, due := 4000)
+        for n in range(600):
+            post(instrument, SERVER, due + n % 5, WRITE, VOLUME, n / 600)
+            post_of_page(instrument, 9 + n % 3, due + n % 70, WRITE, VOLUME, n / 600)
+        found.append(play(instrument, due + 1200 - instrument.frame, size))
+    assert len(found[0]) > 1200
+    assert found[0] == found[1]
+
+
+def test_a_note_of_midi_of_the_server_and_of_a_page_is_not_late_for_what_other_pages_send() -> None:
+    instrument = live()
+    count = fill_queues(instrument, 12, due := 4000)
+    play(instrument, due - instrument.frame)
+    now = instrument.frame
+    post_of_page(instrument, 40, now, BEGIN, 1, MARK, MARK)
+    post(instrument, SERVER, now, BEGIN, 2, MARK + 1, MARK + 1)
+    post(instrument, MIDI_INPUTS, 0, MESSAGE, packed([0x90, int(MARK) + 2, 100], 0))
+    applied = play(instrument, 2 * count)
+    (page,), (server,), (midi,) = (frames_of(applied, BEGIN, MARK + n) for n in range(3))
+    assert server < now + BLOCK
+    assert midi < now + BLOCK
+    assert page < now + BLOCK
+    ends = [frame for frame, kind, *_ in applied if kind == END]
+    assert max(ends) > now + 10 * BLOCK
+
+
+def test_midi_is_not_late_for_what_the_server_is_sent() -> None:
+    instrument = live()
+    for n in range(8000):
+        post(instrument, SERVER, DUE, END, 7, 60.0 + n % 12)
+    play(instrument, DUE - instrument.frame)
+    post(instrument, MIDI_INPUTS, 0, MESSAGE, packed([0x90, int(MARK), 100], 0))
+    applied = play(instrument, 4000)
+    (midi,) = frames_of(applied, BEGIN, MARK)
+    assert midi < DUE + BLOCK
+    assert max(frame for frame, *_ in applied) > DUE + 2000
+
+
+def test_a_page_that_fills_its_queue_loses_its_own_events_and_still_ends_what_it_played() -> None:
+    instrument = live()
+    room = PAGE_QUEUE - PAGE_RESERVE
+    for n in range(room + 50):
+        post_of_page(instrument, 3, DUE, WRITE, VOLUME, n / 1000)
+    post_of_page(instrument, 3, DUE, LEAVE, 1 << 16, 1 << 12)
+    post_of_page(instrument, 3, DUE, LIFT)
+    post_of_page(instrument, 4, DUE, SLIDE, 0, MARK)
+    applied = play(instrument, DUE + 400)
+    assert instrument.dropped_events == 50
+    assert len(frames_of(applied, SLIDE, MARK)) == 1
+    assert [kind for _, kind, *_ in applied].count(LIFT) == 1
+
+
+def test_an_event_that_comes_to_many_commands_takes_as_much_of_the_budget() -> None:
+    instrument = live()
+    for _ in range(16):
+        post(instrument, SERVER, DUE, START, 0, 1.0)
+    applied = play(instrument, DUE + 1000)
+    at_once = [frame for frame, *_ in applied if frame < DUE + BLOCK]
+    most = LIVE_BUDGET + BUDGET_PER_FRAME * BLOCK
+    assert len(applied) > 3 * len(at_once) // 2
+    assert len(at_once) <= most
+
+
+def test_offline_nothing_is_deferred() -> None:
+    instrument = Instrument(InstrumentSpec(RATE))
+    instrument.report_commands()
+    for n in range(1000):
+        post(instrument, SERVER, DUE, WRITE, VOLUME, n / 1000)
+    frames = [frame for frame, *_ in play(instrument, DUE + 64)]
+    assert len(frames) == 1000
+    assert max(frames) < DUE + 16
+
+
+def test_a_replay_of_what_was_applied_under_a_flood_applies_it_at_the_same_frames() -> None:
+    instrument = live()
+    chance = np.random.default_rng(4)
+    for n in range(2000):
+        kind = (BEGIN, END, WRITE, EXPRESS, SLIDE, DRAW)[chance.integers(6)]
+        index = VOLUME if kind in (WRITE, EXPRESS) else 5
+        numbers = (index, chance.uniform(0, 1) if index == VOLUME else 60.0, 60.0)
+        writer = (SERVER, PAGES)[n % 2]
+        post(instrument, writer, DUE + int(chance.integers(20)), kind, *numbers)
+        if n % 400 == 0:
+            play(instrument, BLOCK)
+    applied = play(instrument, 6000)
+    for is_live, block in ((False, 64), (True, 64), (True, 333)):
+        again = Instrument(InstrumentSpec(RATE), is_live=is_live)
+        again.report_commands()
+        for frame, kind, index, value, other in applied:
+            again.post(kind, frame=frame, index=index, value=value, other=other)
+        assert play(again, instrument.frame, block) == applied, (is_live, block)
+
+
+def test_a_release_of_all_cancels_what_waits_in_every_queue() -> None:
+    instrument = live()
+    post(instrument, SERVER, DUE, NOTE_ON, 1, 60.0, 0.5)
+    for page in (0, 63):
+        post_of_page(instrument, page, DUE, BEGIN, 2, 61.0, 61.0)
+    play(instrument, BLOCK)
+    post(instrument, SERVER, DUE - 10, RELEASE_ALL)
+    applied = play(instrument, DUE + 100)
+    assert not [kind for _, kind, *_ in applied if kind == BEGIN]
+
+
+def test_a_full_queue_of_midi_waits_in_its_ring() -> None:
+    instrument = live()
+    soon = 10**8  # ns: some thousand frames
+    for _ in range(SMALL_RING):
+        post(instrument, MIDI_INPUTS, soon, MESSAGE, packed([0xB0, 7, 100], 0))
+    play(instrument, 8 * BLOCK)
+    assert instrument.dropped_events == 0

@@ -157,7 +157,9 @@ def test_an_error_names_its_line(subtests, read):
             assert all(line.isprintable() for line in lines)
 
 
-def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines_unless_there_are_very_many(read):
+def test_all_errors_of_a_file_are_reported_in_the_order_of_its_lines_unless_there_are_very_many(
+    read,
+):
     wrong = FULL.replace("0.9]", "9]").replace("cc 1/33", "cc 1/34").replace("= 50", "= -1")
     with pytest.raises(MappingError) as caught:
         read(wrong.replace('name = "mine"', "mpe = 2"))

@@ -68,7 +68,7 @@ def test_whatever_was_measured_its_body_is_passive_and_its_energy_balances(seed,
     assert run["loss_bridge"].min() >= 0.0
 
 
-def test_what_cannot_be_fitted_is_told():
+def test_what_cannot_be_fitted_is_reported():
     hz = np.linspace(100.0, 5000.0, 500)
     measured = Measurement(Curve(hz, admittance(hz)), None)
     for measurement, options, told in (

@@ -45,7 +45,7 @@ def test_one_recording_may_hold_several_taps(taps):
         assert np.abs(own.force).max() == pytest.approx(np.abs(tap.force).max(), rel=0.01)
 
 
-def test_what_is_no_tap_is_told():
+def test_what_is_no_tap_is_reported():
     force = half_sine(3e-4)[0]
     for channels, told in (
         ({"force": np.zeros(9000), "velocity": np.ones(9000)}, "no hit"),

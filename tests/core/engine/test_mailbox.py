@@ -169,9 +169,6 @@ def test_commands_come_whole_and_in_order_from_thread_to_thread(make):
     assert (meters["applied"], meters["waiting"], meters["unreported"]) == (count, 0, 0)
 
 
-# ---------------------------------------------------------------- and between processes
-
-
 # ---------------------------------------------------------------- full rings
 
 

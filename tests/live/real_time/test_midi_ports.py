@@ -112,9 +112,6 @@ class Witness:
         time.sleep(0.05)
         return {move.address: (move.frame, move.target, move.ramp) for move in self._moves.seen()}
 
-    def malformed(self) -> int:
-        return int(self.server.status()["midi_malformed"])
-
     def comes_to(self, pitch: float | None) -> None:
         """Wait until what is posted is played."""
         self._until(lambda: self.player.pitch == pitch, f"the pitch to be {pitch}", SOON_S)

@@ -12,7 +12,15 @@ from web_client import walk
 
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
-from yehu_server.live.web.query import ATTRIBUTES, LISTENABLE, Snapshot, find, node_at
+from yehu_server.live.web.query import (
+    ATTRIBUTES,
+    LISTENABLE,
+    LISTENABLE_OF_PARTS,
+    Snapshot,
+    find,
+    is_listenable,
+    node_at,
+)
 from yehu_server.params.table import TABLE
 
 NOTHING = {Kind.TEXT: "", Kind.GAUGE: 0.0, Kind.COUNTER: 0}
@@ -89,3 +97,10 @@ def test_only_a_server_loads_what_the_web_needs(module):
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert module in run.stdout.split()
     assert not {"aiohttp", "zeroconf", "prometheus_client"} & set(run.stdout.split())
+
+
+def test_of_a_part_what_it_has_may_be_listened_to_and_nothing_of_the_servers():
+    known = LISTENABLE | LISTENABLE_OF_PARTS
+    assert {own for own in known if is_listenable(own, 2)} == LISTENABLE
+    assert {own for own in known if is_listenable(f"/part/2{own}", 2)} == LISTENABLE_OF_PARTS
+    assert not any(is_listenable(f"/part/3{own}", 2) for own in known)

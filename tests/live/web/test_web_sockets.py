@@ -174,6 +174,14 @@ def test_the_connections_of_a_host_shut_no_other_out(port, connect):
             connection.close()
 
 
+def test_connections_that_have_ended_count_no_more(port):
+    with socket.create_connection((HOST, port), timeout=20.0) as first:
+        for _ in range(limits.WEB_CONNECTIONS_A_HOST + 1):
+            assert ask(port, "/yehu/bow/force?TYPE").status == 200
+        first.sendall(b"GET /yehu/bow/force?TYPE HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        assert first.recv(1 << 16).startswith(b"HTTP/1.1 200")
+
+
 def is_open(connection: socket.socket) -> bool:
     connection.setblocking(False)
     try:

@@ -12,6 +12,7 @@ from pitch import cents, pitch_of
 
 import yehu_server as yehu
 from yehu_server import Note
+from yehu_server.api.notes import score_of
 
 RATE = 44100
 PHRASE = [("F4", 0.0, 0.3), ("A4", 0.3, 0.3), ("C5", 0.6, 0.4)]
@@ -115,6 +116,12 @@ def test_notes_come_in_any_form():
         iter(PHRASE),
     ):
         np.testing.assert_array_equal(yehu.render(same, tail=0.0).sound, expected)
+
+
+def test_a_note_ends_where_the_next_one_of_its_key_begins():
+    rows = [("A4", 0.0, 1.0), ("C5", 0.2, 0.1), (69.3, 0.5, 0.2), ("A4", 0.8, 0.3)]
+    ends = [each.time_s for each in score_of(rows).events if each.message.type == "note_off"]
+    assert ends == pytest.approx([0.3, 0.5, 0.7, 1.1])
 
 
 # ---------------------------------------------------------------- what is refused

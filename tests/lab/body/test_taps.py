@@ -92,7 +92,7 @@ def test_a_double_hit_is_seen(taps):
         assert "the hammer hit twice" in looked_at(hit_twice(taps[0], after_s, size)).faults
 
 
-def test_strings_that_are_not_damped_are_told_from_drift_and_hum(taps):
+def test_strings_that_are_not_damped_are_no_drift_or_hum(taps):
     """Strings of 349 Hz and its octave, 30 dB below the body, that ring for seconds."""
 
     def strings(time):

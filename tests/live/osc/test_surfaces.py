@@ -1,4 +1,4 @@
-"""Surfaces on a real server: their pads, and the shipped patch in a real Pure Data."""
+"""The shipped patch on a real server, in a real Pure Data."""
 
 from __future__ import annotations
 

@@ -95,5 +95,6 @@ def test_each_strip_of_wide_hair_slips_by_itself():
     """While the middle sticks, the string turns about it: ends of wide hair cannot all stick."""
     wide = override(YEHU, {"bow": {"width": 0.02, "points": 4}})
     run = play({"F_N": 0.5, "v_b": 0.2}, 0.3, quantities=wide)
+    assert run.refined["offset"][0, :4] == pytest.approx([-0.0075, -0.0025, 0.0025, 0.0075])
     assert np.ptp(run.refined["v_r"][0]) > 1e-4
     assert np.ptp(run.refined["z"][0, :, 0]) > 1e-7

@@ -5,7 +5,6 @@ import os
 import pickle
 import re
 import signal
-import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -28,8 +27,6 @@ settings.load_profile("yehu")
 
 COLLECT_AFTER = (50_000, 20, 20)  # objects: Python's own 700 would look through all of them often
 
-CHANGED_S = 60.0  # how long tests of a change begin
-BEGAN = pytest.StashKey[float]()  # when the first test did
 WAITING = {"ahead", "documentation", "page", "real_time"}  # folders of tests that mostly wait
 LAST_WAITS = 0.92  # of all files: when the last that waits begins
 
@@ -41,13 +38,6 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--all", action="store_true", help="also run the tests that are marked slow")
-    parser.addoption(
-        "--changed",
-        nargs="?",
-        const="HEAD",
-        metavar="REVISION",
-        help="run what a change since then can reach, nearest first, for a minute",
-    )
 
 
 @pytest.hookimpl(wrapper=True)
@@ -73,14 +63,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             items[:] = [item for item in items if item not in left_out]
     place = places(list(dict.fromkeys(item.path for item in items)))
     items.sort(key=lambda item: place[item.path])
-    if revision := config.getoption("--changed"):
-        from changed import changed_files, distances
-
-        near = distances(changed_files(revision), {item.path for item in items})
-        config.hook.pytest_deselected(items=[item for item in items if item.path not in near])
-        items[:] = sorted(
-            (item for item in items if item.path in near), key=lambda item: near[item.path]
-        )
 
 
 def combinations(items: list[pytest.Item]) -> list[pytest.Item]:
@@ -106,14 +88,6 @@ def places(files: list[Path]) -> dict[Path, float]:
     others = [file for file in files if file.parent.name not in WAITING]
     spread = {file: LAST_WAITS * n / len(waiting) for n, file in enumerate(waiting)}
     return {file: n / len(others) for n, file in enumerate(others)} | spread
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Skip what comes after a minute, where a minute is asked for, before anything is set up."""
-    began = item.session.stash.setdefault(BEGAN, time.monotonic())
-    if item.config.getoption("--changed") and time.monotonic() > began + CHANGED_S:
-        pytest.skip("the minute of --changed is over")
 
 
 @pytest.fixture(scope="session")

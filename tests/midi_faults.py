@@ -17,8 +17,6 @@ from pathlib import Path
 
 from midi_bytes import END, chunk, head, mac_binary, midi, number, off, on, riff, tempo
 
-AGREES, REFUSES, DIFFERS = "agrees", "refuses", "differs"
-UNASKED = "takes a minute"
 Notes = tuple[tuple[float, int], ...]  # beginnings (s) and keys
 
 FIRST, SECOND = on(0, 67) + off(96, 67), on(0, 69) + off(96, 69)
@@ -39,15 +37,12 @@ class Case:
         The beginnings (s) and keys of its notes; None where it is refused.
     says : str
         The warnings, or the reason of the refusal.
-    mido : str
-        What mido makes of it: it agrees in each message and time, refuses, or differs.
     """
 
     name: str
     data: bytes
     says: str = ""
     hears: Notes | None = BOTH
-    mido: str = AGREES
 
 
 def song(*tracks: bytes, kind: int = 0, division: int = 96, count: int | None = None) -> bytes:
@@ -65,8 +60,8 @@ def zipped(data: bytes) -> bytes:
     return file.getvalue()
 
 
-def refused(name: str, data: bytes, says: str, mido: str = REFUSES) -> Case:
-    return Case(name, data, says, None, mido)
+def refused(name: str, data: bytes, says: str) -> Case:
+    return Case(name, data, says, None)
 
 
 ONE = head(0, 1, 96)
@@ -74,15 +69,14 @@ WHOLE = song(TUNE)
 NO = "is not a MIDI file: "
 
 WRAPPED = (
-    Case("riff", riff(WHOLE, before=b"LIST\x03\0\0\0abc\0"), mido=REFUSES),
-    Case("riff-of-a-wrong-length", riff(WHOLE, length=9999), mido=REFUSES),
-    Case("macbinary", mac_binary(WHOLE), mido=REFUSES),
-    Case("riff-in-macbinary", mac_binary(riff(WHOLE)), mido=REFUSES),
+    Case("riff", riff(WHOLE, before=b"LIST\x03\0\0\0abc\0")),
+    Case("riff-of-a-wrong-length", riff(WHOLE, length=9999)),
+    Case("macbinary", mac_binary(WHOLE)),
+    Case("riff-in-macbinary", mac_binary(riff(WHOLE))),
     Case(
         "junk-before",
         b"From: a friend\nSubject: the tune\n\n" + WHOLE,
         "34 bytes before the header skipped, at byte 0",
-        mido=REFUSES,
     ),
     refused(
         "junk-of-more-than-64-kb",
@@ -110,24 +104,21 @@ WRAPPED = (
 )
 
 HEADERS = (
-    Case("smpte", song(SLOW, division=0xE728), mido=DIFFERS),
+    Case("smpte", song(SLOW, division=0xE728)),
     Case(
         "division-0",
         song(on(0, 67) + off(480, 67) + on(0, 69) + off(480, 69) + END, division=0),
         "a division of 0: 480 ticks a quarter note assumed, at byte 12",
-        mido=REFUSES,
     ),
     Case(
         "smpte-division-0",
         song(SLOW, division=0xE700),
         "a division of 0: 40 ticks a frame assumed, at byte 12",
-        mido=DIFFERS,
     ),
     Case(
         "smpte-frames-of-no-film",
         song(SLOW, division=0xCE14),
         "50 frames a second, as no film has, believed, at byte 12",
-        mido=DIFFERS,
     ),
     Case("format-above-2", song(TUNE, kind=9), "unknown format 9, read as format 1, at byte 8"),
     Case(
@@ -139,19 +130,16 @@ HEADERS = (
         "fewer-tracks-than-announced",
         song(TUNE, kind=1, count=3),
         "3 tracks announced, 1 found, at byte 10",
-        mido=REFUSES,
     ),
     Case(
         "more-tracks-than-announced",
         song(FIRST + END, LATE, kind=1, count=1),
         "1 track announced, 2 found, at byte 10",
-        mido=DIFFERS,
     ),
     Case(
         "header-of-a-wrong-length",
         b"MThd\0\0\0\0" + ONE[8:] + track(TUNE),
         "a header of a wrong length read as usual, at byte 4",
-        mido=REFUSES,
     ),
     refused("header-cut-short", b"MThd\0\0\0\6\0\1", "has a damaged header at byte 0"),
     refused("no-header", track(TUNE), NO + "it has a track and no header (MThd)"),
@@ -159,7 +147,6 @@ HEADERS = (
         "two-files-joined",
         song(FIRST + END) + song(SECOND + END),
         "another file within the file, played after the one before, at byte 34",
-        mido=DIFFERS,
     ),
 )
 
@@ -169,13 +156,9 @@ TRACKS = (
         song(TUNE + on(0, 71) + off(96, 71))[:-3].replace(END, b""),
         "a track ends in the middle of an event, at byte 42; the file is cut short, at byte 43",
         hears=(*BOTH, (1.0, 71)),
-        mido=REFUSES,
     ),
     Case(
-        "cut-between-events",
-        ONE + track(FIRST + SECOND, 99),
-        "the file is cut short, at byte 38",
-        mido=REFUSES,
+        "cut-between-events", ONE + track(FIRST + SECOND, 99), "the file is cut short, at byte 38"
     ),
     Case(
         "no-end-of-track",
@@ -183,72 +166,58 @@ TRACKS = (
         "a track without its end read up to the next, at byte 38",
     ),
     Case(
-        "length-0",
-        ONE + track(TUNE, 0),
-        "a track of a wrong length read up to its end, at byte 18",
-        mido=DIFFERS,
+        "length-0", ONE + track(TUNE, 0), "a track of a wrong length read up to its end, at byte 18"
     ),
     Case(
         "length-too-short",
         head(1, 2, 96) + track(FIRST + END, 9) + track(LATE),
         "a track of a wrong length read up to its end, at byte 18",
-        mido=REFUSES,
     ),
     Case(
         "length-too-long",
         head(1, 2, 96) + track(FIRST + END, 20) + track(LATE),
         "a track of a wrong length read up to its end, at byte 18",
-        mido=REFUSES,
     ),
     Case(
         "length-over-two-tracks",
         head(1, 2, 96) + track(FIRST + END, 32) + track(LATE),
         "a track of a wrong length read up to its end, at byte 18",
-        mido=REFUSES,
     ),
     Case(
         "bytes-between-tracks",
         head(1, 2, 96) + track(FIRST + END) + b"\0\0\0" + track(LATE),
         "bytes outside any chunk skipped, at byte 34",
-        mido=REFUSES,
     ),
     Case("bytes-at-the-end", WHOLE + b"\x1a" * 86, "bytes outside any chunk skipped, at byte 42"),
     Case(
         "events-after-the-end",
         song(TUNE + on(0, 71) + off(96, 71)),
         "bytes after the end of a track skipped, at byte 42",
-        mido=DIFFERS,
     ),
     Case(
         "empty-track",
         song(TUNE, b"", kind=1),
         "a track without its end read up to the next, at byte 50",
     ),
-    Case("unknown-chunk", ONE + chunk(b"XFIH", b"\xff\0") + track(TUNE), mido=REFUSES),
+    Case("unknown-chunk", ONE + chunk(b"XFIH", b"\xff\0") + track(TUNE)),
     Case("format-2", song(FIRST + END, SECOND + END, kind=2)),
     Case("format-2-of-one-track", song(TUNE, kind=2)),
-    refused("no-tracks", song(), "has no playable track", mido=AGREES),
-    refused("nothing-to-play", song(tempo(0, 500_000) + END), "has no playable track", AGREES),
+    refused("no-tracks", song(), "has no playable track"),
+    refused("nothing-to-play", song(tempo(0, 500_000) + END), "has no playable track"),
 )
 
 EVENTS = (
     Case("running-status-after-a-text", song(on(0, 67) + b"\0\xff\1\2la\x60\x43\0" + SECOND + END)),
     Case(
-        "running-status-after-sysex",
-        song(on(0, 67) + b"\0\xf0\2\1\xf7\x60\x43\0" + SECOND + END),
-        mido=DIFFERS,
+        "running-status-after-sysex", song(on(0, 67) + b"\0\xf0\2\1\xf7\x60\x43\0" + SECOND + END)
     ),
     Case(
         "data-without-status",
         song(b"\0\x43\x50" + b"\x90\x43\x50" + off(96, 67) + SECOND + END),
         "data without a status byte skipped, at byte 23",
-        mido=REFUSES,
     ),
     Case(
-        "velocity-above-127",
-        song(on(0, 71, 200) + TUNE),
-        "a damaged message dropped, at byte 22",
-        mido=REFUSES,
+        "velocity-above-127", song(on(0, 71, 200) + TUNE), "a damaged message dropped, at byte 22"
     ),
     Case(
         "system-message",
@@ -264,13 +233,11 @@ EVENTS = (
         "event-longer-than-its-track",
         song(FIRST + SECOND + b"\0\xff\1\x7fla"),
         "a track ends in the middle of an event, at byte 38",
-        mido=REFUSES,
     ),
     Case(
         "note-without-an-end",
         song(on(0, 67) + LATE),
         "a note without an end stopped at the next one, at byte 22",
-        mido=DIFFERS,
     ),
     Case("last-note-without-an-end", song(FIRST + on(0, 69) + b"\x60\xff\x2f\0")),
     Case("end-without-a-note", song(off(0, 71) + TUNE)),
@@ -280,17 +247,11 @@ EVENTS = (
 )
 
 TIMES = (
-    Case(
-        "tempo-0",
-        song(tempo(0, 0) + TUNE),
-        "a tempo of zero or cut short ignored, at byte 22",
-        mido=DIFFERS,
-    ),
+    Case("tempo-0", song(tempo(0, 0) + TUNE), "a tempo of zero or cut short ignored, at byte 22"),
     Case(
         "tempo-cut-short",
         song(b"\0\xff\x51\2\1\2" + TUNE),
         "a tempo of zero or cut short ignored, at byte 22",
-        mido=REFUSES,
     ),
     Case(
         "time-signature-of-0",
@@ -301,7 +262,6 @@ TIMES = (
         "key-signature-of-8-sharps",
         song(b"\0\xff\x59\2\x08\0" + TUNE),
         "an impossible key signature ignored, at byte 22",
-        mido=REFUSES,
     ),
     Case(
         "long-silence-at-the-end",
@@ -313,19 +273,16 @@ TIMES = (
         song(FIRST + REST + SECOND[1:] + END),
         "the score lasts 388 hours, more than 2: see --max-duration "
         "(most of it is the rest before byte 30)",
-        AGREES,
     ),
     refused(
         "many-rests",
         song(FIRST + (number(96 * 600) + on(0, 69)[1:]) * 30 + END),
         "the score lasts 2.5 hours, more than 2: see --max-duration",
-        AGREES,
     ),
     refused(
         "more-than-a-million-events",
         song(on(0, 67) + b"\0\x43\0" * 1_000_000 + END),
         "has more than 1000000 events",
-        UNASKED,
     ),
 )
 
@@ -338,7 +295,7 @@ def main() -> None:
     expected = {}
     for case in CASES:
         (folder / f"{case.name}.mid").write_bytes(case.data)
-        expected[case.name] = {"notes": case.hears, "says": case.says, "mido": case.mido}
+        expected[case.name] = {"notes": case.hears, "says": case.says}
     text = json.dumps(expected, indent=1)
     (folder / "expected.json").write_text(f"{text}\n", encoding="utf-8")
 

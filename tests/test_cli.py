@@ -158,7 +158,7 @@ def test_behind_nohup_a_command_outlives_its_terminal(command):
 # ---------------------------------------------------------------- what is said when all is well
 
 
-def test_a_person_is_told_what_came_of_it_a_program_one_object_and_who_wants_it_nothing(
+def test_a_person_reads_what_came_of_it_a_program_one_object_and_who_wants_it_nothing(
     command, into, out
 ):
     code, told, err = command(*into, out / "x")
@@ -291,7 +291,7 @@ def test_a_place_where_nothing_can_be_written_is_refused_and_left_as_it_is(
 
 
 @pytest.mark.parametrize("name", ["x", "x.wav", "x.flac"])
-def test_what_is_no_result_of_a_rendering_is_replaced_only_when_told(
+def test_what_is_no_result_of_a_rendering_is_replaced_only_when_asked(
     refused, command, tune, out, name
 ):
     target = out / name
@@ -328,7 +328,7 @@ def test_a_dash_is_no_file_to_write(subtests, refused, out, monkeypatch):
 @pytest.mark.parametrize(
     "words", ["x.wav", "x.wav --subtype float", "x.flac", "x.wav --normalize", "x.npz"]
 )
-def test_a_full_disk_is_told_in_one_line_and_an_older_file_stays(tmp_path, out, words):
+def test_a_full_disk_is_reported_in_one_line_and_an_older_file_stays(tmp_path, out, words):
     name, *options = words.split()
     if name == "x.npz":
         first, source = "simulate", tmp_path / "gesture.json"
@@ -433,7 +433,7 @@ def test_letters_that_a_terminal_has_not_are_no_traceback(tmp_path, monkeypatch)
     assert terminal.buffer.getvalue().startswith(rb"\u5341\u676f\u9152")
 
 
-def test_a_limit_on_files_is_told_where_it_leaves_no_memory_for_instruments():
+def test_a_limit_on_files_is_reported_where_it_leaves_no_memory_for_instruments():
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, before[1]))
     try:
@@ -463,7 +463,7 @@ def test_a_whole_run_in_a_new_python(tune, out):
 
 @pytest.mark.skipif(not FULL.exists(), reason="Linux has a file that is full")
 @pytest.mark.parametrize("words", [("presets", "list"), ("--help",)])
-def test_a_full_standard_output_is_told_in_one_line(words):
+def test_a_full_standard_output_is_reported_in_one_line(words):
     with FULL.open("w") as full, start(*words, stdout=full) as process:
         _, said = process.communicate(timeout=60)
     assert process.returncode == 2

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from as_processor import CANNOT, PROCESSORS, V2, V3, V4, missing
+from as_processor import CANNOT, PROCESSORS, V2
 
 TESTS = Path(__file__).parent
 PRINT = """
@@ -50,22 +50,3 @@ def test_constants_are_the_same_on_every_processor(here, processor):
     other = constants(sys.executable, str(TESTS / "as_processor.py"), processor)
     assert [line for line in other if line not in here] == []
     assert len(other) == len(here)
-
-
-@pytest.mark.skipif("x86-64" in missing(V2), reason="this is no x86-64 processor")
-def test_another_processor_is_another_for_each_library():
-    show = (
-        "import yehu_server.compile.numba_compiler;"
-        "from numba.core.registry import cpu_target; import numpy as np;"
-        "print(*cpu_target.target_context.codegen().magic_tuple()[1:], sep='|');"
-        "print(np.show_config(mode='dicts')['SIMD Extensions'].get('found') or [])"
-    )
-    command = [sys.executable, TESTS / "as_processor.py", V2, sys.executable, "-c", show]
-    child = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert (child.stdout.splitlines(), child.stderr) == ([f"{V2}|", "[]"], "")
-
-
-def test_a_processor_that_cannot_be_had_is_told(monkeypatch):
-    monkeypatch.setattr("llvmlite.binding.get_host_cpu_features", lambda: {"avx2": True})
-    assert {"avx512f", "fma"} <= set(missing(V4))
-    assert "avx2" not in missing(V3)

@@ -1,4 +1,4 @@
-"""The documentation holds: what it names is there, commands can be given, programs run.
+"""The documentation holds: links and addresses lead somewhere, commands can be given, programs run.
 
 Links are those of Markdown; how the site shows the pages is in tests/documentation/.
 """
@@ -6,21 +6,18 @@ Links are those of Markdown; how the site shows the pages is in tests/documentat
 from __future__ import annotations
 
 import argparse
-import builtins
 import json
 import re
 import shlex
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
 from generators.written import written
-from pages import FENCED, PACKAGE, PACKAGES, PAGES, ROOT, Page
+from pages import FENCED, PACKAGE, PAGES, ROOT
 from pages import page as page_named
 
-import yehu_server
 from yehu_server.cli import _parser, main
 from yehu_server.live.network import HTTP_ADDRESS, OSC_ADDRESS
 from yehu_server.live.osc.all_calls import CALLS, PREFIX
@@ -28,10 +25,9 @@ from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.params.table import TABLE, UNIT
 
 OURS = ("yehu-server", "scripts/yehu")
-FOREIGN = (".venv/bin/pytest", ".venv/bin/mkdocs", "open-stage-control")
 SLOW = {"docs/body.md"}  # whose programs take half a minute
 # What there will be once the examples of CONTRIBUTING.md are followed.
-EXAMPLE_ADDRESSES, EXAMPLE_NAME = {"/bow/turn", "/lift"}, "TURN"
+EXAMPLE_ADDRESSES = {"/bow/turn", "/lift"}
 
 
 # ---------------------------------------------------------------- what is written
@@ -135,72 +131,6 @@ def test_every_program_runs(name, program, tmp_path, monkeypatch, capsys):
 
 # ---------------------------------------------------------------- what is named
 
-FOLDERS = {path.name for each in (ROOT, *PACKAGES) for path in each.iterdir() if path.is_dir()}
-# Words in capitals stand for names that the reader gives; so do files of the reader's own.
-PLACEHOLDER = re.compile(r"\b[A-Z]{2,}\b|\.\.\.")
-MADE = {"web/facts.js", "web/examples.js"}  # that git ignores
-OTHERS = {"NUMBA_SLP_VECTORIZE", "net.core.rmem_max", "cmp", "arp", "bb3"}  # of other programs
-OWN = (".h", ".json", ".npz", ".wav")  # endings of files of the reader's own
-
-
-@cache
-def sources() -> dict[Path, set[str]]:
-    """The words of each file of code, without the comments."""
-    found = {}
-    for folder in (*PACKAGES, *(ROOT / each for each in ("scripts", "bench", "tests", "web"))):
-        for path in folder.rglob("*"):
-            if "node_modules" in path.parts:
-                continue
-            if path.suffix in {".py", ".js", ".mjs", ".sh", ""} and path.is_file():
-                text = re.sub(r"\s# .*", "", path.read_text(encoding="utf-8", errors="replace"))
-                found[path] = set(re.findall(r"(?<![\w-])--[a-z][\w-]*|\w+", text))
-    del found[Path(__file__)]
-    return found
-
-
-@cache
-def words() -> set[str]:
-    parameters = {param.address.strip("/").replace("/", "_").upper() for param in TABLE}
-    examples = {path.stem for path in (ROOT / "examples").rglob("*.*")}
-    return {EXAMPLE_NAME, *dir(builtins), *parameters, *examples}.union(*sources().values())
-
-
-def is_option(word: str, command: str) -> bool:
-    parser = commands_of(all_commands()).get(command)
-    if parser is not None:
-        return word in options_of(parser)
-    return word in options_of(all_commands()) or word in words()
-
-
-def is_file(name: str, page: Page) -> bool:
-    def places() -> Iterator[Path]:
-        for folder in (ROOT, *PACKAGES, page.path.parent, ROOT / "tests"):
-            yield from folder.glob(name)
-        if "/" not in name:
-            for folder in (*PACKAGES, *(ROOT / each for each in ("tests", "docs", "mappings"))):
-                yield from folder.rglob(name)
-
-    shipped = name.removeprefix("yehu_server/")
-    return name in MADE or any(places()) or shipped in {"docs", "examples", "mappings", "presets"}
-
-
-def is_symbol(name: str) -> bool:
-    """Whether there is such a name: in its module where it has one before it, or anywhere."""
-    *before, last = name.split(".")
-    if before and before[0] in {"yehu", "yehu_server"}:
-        found = yehu_server
-        for part in [*before[1:], last]:
-            if not hasattr(found, part):
-                return (PACKAGE / "/".join([*before[1:], last])).exists()
-            found = getattr(found, part)
-        return True
-    file = "/".join(before) + ".py"
-    modules = [path for each in PACKAGES for path in each.rglob(file)] if before else []
-    if modules:
-        return any(last in sources()[path] for path in modules)
-    made = re.sub("^yehu_|^YEHU_|_total$", "", last)  # a metric, or a name of yehu.h
-    return name in OTHERS or made in words() or {*before, last} <= words()
-
 
 @cache
 def addresses() -> set[str]:
@@ -220,29 +150,6 @@ def is_address(address: str) -> bool:
     if below := re.fullmatch(r"/part/(?:N|\d+|\*)(/.*)?", plain):
         plain, known = (below[1] or "").removesuffix("/"), known | {"/fader1", "/NAME"}
     return plain.removesuffix("/...") in known
-
-
-def missing(code: str, page: Page) -> Iterator[str]:
-    """What a piece of code in a sentence names that is not there."""
-    first, *rest = code.split()
-    command = rest[0] if first in OURS and rest else first
-    if first != command and command[0] != "-" and command not in commands_of(all_commands()):
-        yield command
-    for word in code.split() if first not in FOREIGN else ():
-        name = re.sub(r"=\S*$|[/,]+$", "", word)
-        top, slash, _ = name.partition("/")
-        if re.match(r"--[a-z]", word):
-            if not is_option(name, command):
-                yield word
-        elif re.fullmatch(r"[\w*-]+\.(py|md|html|pd|tosc|maxpat)", name) or (
-            slash and top in FOLDERS and re.fullmatch(r"[\w./*-]+", name)
-        ):
-            if not PLACEHOLDER.search(name.removesuffix("README.md")) and not is_file(name, page):
-                yield word
-        elif re.fullmatch(r"@?[a-zA-Z]\w*(\.[a-zA-Z]\w*)*(\(\))?", name, re.ASCII):
-            is_name = not rest or re.search(r"[_.@(]", name)  # else an English word, or a value
-            if is_name and not name.endswith(OWN) and not is_symbol(name.strip("@()")):
-                yield word
 
 
 def anchors(path: Path) -> set[str]:
@@ -265,12 +172,6 @@ def test_a_link_leads_to_what_is_there(subtests):
                 ):
                     broken.append(link)
             assert broken == []
-
-
-def test_what_a_page_names_is_there(subtests):
-    for page in PAGES:
-        with subtests.test(page.name):
-            assert [word for code in page.code for word in missing(code, page)] == []
 
 
 @pytest.mark.parametrize("block", page_named("CONTRIBUTING.md").blocks("diff"))

@@ -52,6 +52,20 @@ def test_all_errors_are_sorted_by_line_with_place_and_a_near_word():
     ]
 
 
+BEFORE = [
+    'a = """\n[b]\n\\"# = """', "a = '''\n'\n''' # ]", 'a = "\\"#[["', "a = '\"['",
+    "a = [ # ]\n [1,\n2]]", "'a.b' = 1 # = [", '["a.\\"#="]', "[[x]]\n[x.y]\n[[x]]", "a = 1\r",
+]  # fmt: skip
+
+
+def test_lines_are_counted_whatever_strings_brackets_and_comments_come_before(subtests):
+    for before in BEFORE:
+        with subtests.test(before), pytest.raises(MappingError) as error:
+            read(document(f"{before}\n[room]\nsiz = 9\n", 50).toml())
+        wrong = f"mine.toml:{before.count(chr(10)) + 3}: room.siz: unknown"
+        assert any(wrong in line for line in (str(error.value), *error.value.more)), before
+
+
 def test_else_the_first_is_raised_at_once():
     with pytest.raises(MappingError, match=r"^mine\.toml:5: room\.decay: expected a number"):
         read(document(TEXT).toml())

@@ -37,7 +37,7 @@ def test_it_tells_what_it_did(command, hum, tmp_path):
     assert (told["notes"], told["strokes"], told["transposed"]) == (1, 1, 12.0)
 
 
-def test_what_is_wrong_is_told_before_it_listens(command, hum, tmp_path, monkeypatch):
+def test_what_is_wrong_is_reported_before_it_listens(command, hum, tmp_path, monkeypatch):
     def listen(*_):
         raise AssertionError
 

@@ -1,7 +1,6 @@
 """Any file that is given for one of ours gets one line of error, soon."""
 
 import os
-from pathlib import Path
 
 import pytest
 
@@ -101,18 +100,6 @@ def test_as_deep_as_anybody_nests_is_read():
             parse_json(deep)
         with pytest.raises(ValueError, match="nested too deeply"):
             parse_toml(f"a = {deep}")
-
-
-def test_what_is_refused_by_the_reader_is_one_line_of_the_command(tmp_path, refused):
-    for name, command, *words in (
-        ("c.jsonl", "replay", "-o", tmp_path / "x.wav"),
-        ("g.json", "simulate", "-o", tmp_path / "x.npz"),
-        ("s.mid", "render", "-o", tmp_path / "x.wav"),
-        ("s.musicxml", "score show"),
-    ):
-        (tmp_path / name).write_bytes(b"[" * 100_000)
-        for path in (tmp_path / name, Path("/dev/zero"), tmp_path):
-            refused(*command.split(), path, *words)
 
 
 def test_a_mapping_of_far_too_many_binds_is_refused_before_it_is_parsed(tmp_path, monkeypatch):

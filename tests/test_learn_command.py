@@ -72,7 +72,7 @@ def a_fader_that_moves(server, address: str = "/my/fader"):
         thread.join()
 
 
-def test_what_is_moved_is_learned_and_told(server, at, capsys):
+def test_what_is_moved_is_learned_and_reported(server, at, capsys):
     with a_fader_that_moves(server):
         assert main(["learn", "/playing/vibrato", "/output/gain", *at]) == 0
     out = capsys.readouterr().out
@@ -104,7 +104,7 @@ def test_what_a_part_moves_is_learned_by_its_mapping_alone(duo, capsys):
     assert "/playing/vibrato: 1 forgotten" in capsys.readouterr().out
 
 
-def test_what_cannot_be_learned_or_shown_is_told(duo, refused):
+def test_what_cannot_be_learned_or_shown_is_reported(duo, refused):
     for words, reason in (
         ("learn --part 3 /playing/vibrato", "no part 3: there are parts 1 to 2"),
         ("learn --part 2 /room/size", "/room/size is one for all parts"),

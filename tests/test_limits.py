@@ -22,7 +22,7 @@ def serve(files: int, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("files", [8, FILES_NEEDED - 1])
-def test_too_few_files_are_told_in_one_line_that_says_how_many_are_needed(files):
+def test_too_few_files_are_reported_in_one_line_that_says_how_many_are_needed(files):
     run = serve(files, "--duration", "0.1")
     assert run.returncode == 2
     (line,) = run.stderr.splitlines()

@@ -17,21 +17,6 @@ def test_the_presets_are_listed_with_what_each_is_for(mappings):
     assert json.loads(mappings("list", "--json")[1]) == lines
 
 
-def test_a_preset_is_shown_with_all_that_it_moves(subtests, mappings):
-    for name in shipped_mappings():
-        with subtests.test(name):
-            code, out, _ = mappings("show", name, "--json")
-            assert code == 0
-            shown, mapping = json.loads(out), load(name)
-            assert (shown["name"], shown["mpe"]) == (name, mapping.mpe)
-            assert shown["start"] == dict(mapping.start)
-            assert [(bind["source"], bind["target"]) for bind in shown["bind"]] == [
-                (bind.source, bind.target) for bind in mapping.binds
-            ]
-            table = mappings("show", name)[1]
-            assert all(bind.source in table for bind in mapping.binds)
-
-
 def test_a_file_of_ones_own_is_shown_and_checked(mappings, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(
@@ -58,7 +43,7 @@ smoothing = -1
 """
 
 
-def test_all_that_is_wrong_with_files_is_told_line_by_line(mappings, tmp_path):
+def test_all_that_is_wrong_with_files_is_reported_line_by_line(mappings, tmp_path):
     wrong, right = tmp_path / "wrong.toml", tmp_path / "right.toml"
     wrong.write_text(WRONG)
     right.write_text('base = "keyboard"\n')

@@ -49,7 +49,7 @@ def test_a_preset_is_shown_with_all_its_values(subtests, command):
                 assert address in out
 
 
-def test_all_that_is_wrong_with_each_file_is_told(command, tmp_path):
+def test_all_that_is_wrong_with_each_file_is_reported(command, tmp_path):
     right, first, second = (tmp_path / f"{name}.toml" for name in ("right", "first", "second"))
     right.write_text(HEAD + '[values]\n"/playing/vibrato" = 5\n"/a/b" = 3\n')
     code, out, err = command("presets", "check", right)

@@ -223,7 +223,7 @@ def test_all_channels_but_the_tenth_play_unless_some_are_chosen(play, duet):
         assert sound.any() == bool(channels)
 
 
-def test_what_the_tenth_channel_leaves_out_is_told(play, duet, midi, tmp_path, command):
+def test_what_the_tenth_channel_leaves_out_is_reported(play, duet, midi, tmp_path, command):
     assert play(duet)[0]["percussion_notes"] == 3
     assert play(duet, "--channel", 10)[0]["percussion_notes"] == 0
     assert play(duet, "--channel", 3)[0]["percussion_notes"] == 0
@@ -337,7 +337,7 @@ def test_other_rates_play_the_same_tune(play, tmp_path, midi, rate):
 # ---------------------------------------------------------------- progress
 
 
-def test_progress_is_told_in_seconds_up_to_the_end(phrase, tmp_path):
+def test_progress_is_reported_in_seconds_up_to_the_end(phrase, tmp_path):
     told = []
     summary = render(
         [Part(read_score(phrase))],

@@ -134,7 +134,7 @@ def rendered(songs, command, monkeypatch, tmp_path_factory):
     return run
 
 
-def test_workers_that_do_not_see_the_output_are_told(songs, rendered):
+def test_workers_that_do_not_see_the_output_are_reported(songs, rendered):
     class Away(Here):
         def perform_all(self, perform, tasks):
             tasks = list(tasks)

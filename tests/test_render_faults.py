@@ -31,7 +31,7 @@ def out(tmp_path: Path) -> bool:
     return (tmp_path / "out.wav").exists()
 
 
-def test_damage_is_told_with_its_place_and_the_rest_is_played(render, tmp_path):
+def test_damage_is_reported_with_its_place_and_the_rest_is_played(render, tmp_path):
     code, printed, err = render(DAMAGED)
     assert code == 0
     assert err.splitlines() == [

@@ -82,7 +82,7 @@ def leavings(out: Path) -> list[Path]:
 # ---------------------------------------------------------------- a whole folder
 
 
-def test_all_scores_are_rendered_and_the_broken_ones_told(once):
+def test_all_scores_are_rendered_and_the_broken_ones_reported(once):
     folder, code, out, err = once
     assert code == 1
     assert sorted(err.splitlines()) == [

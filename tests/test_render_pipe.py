@@ -64,7 +64,7 @@ def test_a_reader_that_has_had_enough_ends_it_quietly(tmp_path):
         assert process.wait(timeout=60) == BROKEN_PIPE
 
 
-def test_a_full_disk_behind_the_output_is_told(tune, tmp_path):
+def test_a_full_disk_behind_the_output_is_reported(tune, tmp_path):
     limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096));"
     with (tmp_path / "sound").open("wb") as full:
         done = run("render", tune, "-o", "-", *DRY, code=limit + COMMAND, stdout=full)

@@ -74,7 +74,7 @@ def test_the_c_library_does_not_matter(known, tmp_path):
 
 
 @pytest.mark.slow
-def test_what_numba_is_told_of_processors_does_not_matter(known, tmp_path):
+def test_what_numba_knows_of_processors_does_not_matter(known, tmp_path):
     found = sums(
         QUICK[0], NUMBA_CPU_NAME="nehalem", NUMBA_CPU_FEATURES="", NUMBA_CACHE_DIR=str(tmp_path)
     )

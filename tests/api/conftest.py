@@ -6,7 +6,7 @@ from yehu_server import YehuError
 
 
 @pytest.fixture
-def told() -> Callable[..., None]:
+def refused() -> Callable[..., None]:
     """Check that a call is refused in one line that has some words in it."""
 
     def check(words: str, call: Callable[..., object], *given: object, **options: object) -> None:

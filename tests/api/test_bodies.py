@@ -50,7 +50,7 @@ def test_a_body_of_files_is_fitted_drawn_kept_and_played(tmp_path, monkeypatch):
 
 
 def test_a_fit_is_made_in_a_process_with_one_thread_and_what_it_finds_is_the_same(
-    told, monkeypatch
+    refused, monkeypatch
 ):
     measured = yehu.body.average(yehu.body.made_taps(count=2, seconds=0.3))
     how = {"band_hz": (250.0, 2000.0), "sections": 8}
@@ -65,20 +65,20 @@ def test_a_fit_is_made_in_a_process_with_one_thread_and_what_it_finds_is_the_sam
     monkeypatch.setattr(subprocess, "run", heard)
     hz = yehu.body.fit(measured, **how).modes.frequency_hz
     np.testing.assert_allclose(hz, here.modes.frequency_hz, rtol=1e-9)
-    told("nothing was measured", yehu.body.fit, yehu.body.load().measurement)
+    refused("nothing was measured", yehu.body.fit, yehu.body.load().measurement)
     assert given == ["1", "1"]
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: subprocess.CompletedProcess((), -9))
-    told("ended with code -9", yehu.body.fit, measured)
+    refused("ended with code -9", yehu.body.fit, measured)
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: open("/no/such"))  # noqa: SIM115, PTH123
-    told("cannot be started: No such file", yehu.body.fit, measured)
+    refused("cannot be started: No such file", yehu.body.fit, measured)
 
 
-def test_what_is_wrong_is_told_in_one_line(told):
+def test_what_is_wrong_is_reported_in_one_line(refused):
     measured = yehu.body.load().measurement
-    told("such.toml", yehu.body.load, "/no/such.toml")
-    told("source", yehu.body.load, 7)
-    told("measurement", yehu.body.fit, "tap1.wav")
-    told("list of paths", yehu.body.read, "tap1.wav")
-    told("nothing was measured", yehu.body.fit, measured)
-    told("modes", yehu.body.fit, measured, modes=65)
-    told("band_hz", yehu.body.fit, measured, band_hz=(1.0, np.nan))
+    refused("such.toml", yehu.body.load, "/no/such.toml")
+    refused("source", yehu.body.load, 7)
+    refused("measurement", yehu.body.fit, "tap1.wav")
+    refused("list of paths", yehu.body.read, "tap1.wav")
+    refused("nothing was measured", yehu.body.fit, measured)
+    refused("modes", yehu.body.fit, measured, modes=65)
+    refused("band_hz", yehu.body.fit, measured, band_hz=(1.0, np.nan))

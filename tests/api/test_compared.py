@@ -40,7 +40,7 @@ def test_a_rendering_that_begins_early_or_late_is_moved():
     assert (found.spectrum_db, found.level_db) == pytest.approx((0.0, 0.0), abs=1.0)
 
 
-def test_brightness_and_pitch_are_told_apart():
+def test_brightness_and_pitch_are_distinguished():
     brighter = yehu.compare(tones([440.0], tilt=2.0), tones([440.0], tilt=1.0), RATE)
     low, high = (np.argmin(np.abs(brighter.frequencies - f)) for f in (440.0, 3520.0))
     more = brighter.spectra[1] - brighter.spectra[0]
@@ -53,9 +53,9 @@ def test_brightness_and_pitch_are_told_apart():
     assert repr(unpitched).endswith("no common pitch>")
 
 
-def test_what_cannot_be_compared_is_told(told):
-    told("sample_rate", yehu.compare, tones(), tones())
-    told("nowhere.wav", yehu.compare, "nowhere.wav", tones(), RATE)
-    told("rendering: is silent", yehu.compare, tones(), np.zeros(RATE), RATE)
-    told("rendering: ", yehu.compare, tones(), np.full(RATE, np.nan), RATE)
-    told("recording: is silent", yehu.compare, np.zeros(0), tones(), RATE)
+def test_what_cannot_be_compared_is_reported(refused):
+    refused("sample_rate", yehu.compare, tones(), tones())
+    refused("nowhere.wav", yehu.compare, "nowhere.wav", tones(), RATE)
+    refused("rendering: is silent", yehu.compare, tones(), np.zeros(RATE), RATE)
+    refused("rendering: ", yehu.compare, tones(), np.full(RATE, np.nan), RATE)
+    refused("recording: is silent", yehu.compare, np.zeros(0), tones(), RATE)

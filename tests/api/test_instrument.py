@@ -44,7 +44,7 @@ def test_a_note_sounds_at_its_pitch_at_any_rate():
         assert error == pytest.approx(0.0, abs=12.0), note
 
 
-def test_what_is_asked_for_at_a_time_happens_then_and_the_same_again_after_a_reset(fiddle, told):
+def test_what_is_asked_for_at_a_time_happens_then_and_the_same_again_after_a_reset(fiddle, refused):
     takes = []
     for _ in range(2):
         assert fiddle.time == 0.0
@@ -57,7 +57,7 @@ def test_what_is_asked_for_at_a_time_happens_then_and_the_same_again_after_a_res
         assert fiddle.pitch is None
         fiddle.play(0.25)
         assert fiddle.time == pytest.approx(1.45, abs=1e-4)
-        told("0.2 s is over", fiddle.note_on, "A4", at=0.2)
+        refused("0.2 s is over", fiddle.note_on, "A4", at=0.2)
         fiddle.reset()
     np.testing.assert_array_equal(*takes)
 
@@ -173,29 +173,29 @@ def test_stereo_has_two_sides_and_a_room_and_one_channel_has_none():
 # ---------------------------------------------------------------- what is refused
 
 
-def test_what_is_wrong_is_told_in_one_line(fiddle, told):
+def test_what_is_wrong_is_reported_in_one_line(fiddle, refused):
     play, speed = fiddle.play, "/bow/speed"
-    told("F4 to F6", fiddle.note_on, "C3")
-    told("'H4'", fiddle.note_on, "H4")
-    told("None", fiddle.note_on, None)
-    told("nan", fiddle.note_on, math.nan)
-    told("velocity", fiddle.note_on, "A4", 200)
-    told("F4 to F6", fiddle.slide, 30)
-    told("/bow/force", fiddle.set, "/bow/forse", 1.0)
-    told("0 to 5 N", fiddle.set, "/bow/force", 50.0)
-    told("/bow/force", fiddle.set, "/bow/force", "much")
-    told("address", fiddle.set, 7, 1.0)
-    told("/nothing", fiddle.get, "/nothing")
-    told(speed, fiddle.draw, 9.0, 0.5)
-    told("/pluck/force", fiddle.pluck, 99.0)
+    refused("F4 to F6", fiddle.note_on, "C3")
+    refused("'H4'", fiddle.note_on, "H4")
+    refused("None", fiddle.note_on, None)
+    refused("nan", fiddle.note_on, math.nan)
+    refused("velocity", fiddle.note_on, "A4", 200)
+    refused("F4 to F6", fiddle.slide, 30)
+    refused("/bow/force", fiddle.set, "/bow/forse", 1.0)
+    refused("0 to 5 N", fiddle.set, "/bow/force", 50.0)
+    refused("/bow/force", fiddle.set, "/bow/force", "much")
+    refused("address", fiddle.set, 7, 1.0)
+    refused("/nothing", fiddle.get, "/nothing")
+    refused(speed, fiddle.draw, 9.0, 0.5)
+    refused("/pluck/force", fiddle.pluck, 99.0)
     for seconds in (-1.0, math.inf, 1e9):
-        told("seconds", play, seconds)
-    told("controls", play, 0.1, controls=[1])
+        refused("seconds", play, seconds)
+    refused("controls", play, 0.1, controls=[1])
     for wrong in ([], [0.0, math.nan], "fast"):
-        told(speed, play, 0.1, controls={speed: wrong})
-    told(speed, play, 0.1, controls={"/bow/sped": 0.1})
-    told("strings_every", fiddle.record, 0.1, strings_every=-1)
-    told("GiB", fiddle.record, 3600.0, strings_every=1)
+        refused(speed, play, 0.1, controls={speed: wrong})
+    refused(speed, play, 0.1, controls={"/bow/sped": 0.1})
+    refused("strings_every", fiddle.record, 0.1, strings_every=-1)
+    refused("GiB", fiddle.record, 3600.0, strings_every=1)
     assert fiddle.time == 0.0
     for names, options in (
         ("sample_rate", {"sample_rate": 8000}),
@@ -212,7 +212,7 @@ def test_what_is_wrong_is_told_in_one_line(fiddle, told):
         ("a4", {"a4": 100.0}),
         ("seed", {"seed": -1}),
     ):
-        told(names, yehu.Instrument, **options)
+        refused(names, yehu.Instrument, **options)
 
 
 @pytest.mark.parametrize("stereo", [False, True])

@@ -51,7 +51,7 @@ def test_in_a_notebook_it_is_a_player_that_holds_the_sound(device, monkeypatch):
     device.assert_not_called()
 
 
-def test_without_a_device_or_a_sound_one_line_says_so(device, told):
+def test_without_a_device_or_a_sound_one_line_says_so(device, refused):
     for names, sound, rate in (
         ("sound", "a.wav", None),
         ("sound", None, RATE),
@@ -61,7 +61,7 @@ def test_without_a_device_or_a_sound_one_line_says_so(device, told):
         ("integers", np.zeros(5, np.int16), RATE),
         ("sound", [[1.0], [1.0, 2.0]], RATE),
     ):
-        told(names, yehu.play, sound, rate)
+        refused(names, yehu.play, sound, rate)
     device.assert_not_called()
     device.side_effect = OSError("Error querying device -1")
-    told("no sound device", yehu.play, np.zeros(10), RATE)
+    refused("no sound device", yehu.play, np.zeros(10), RATE)

@@ -185,22 +185,22 @@ def test_a_sweep_is_drawn_as_the_map_that_its_axes_are_for(plt):
 # ---------------------------------------------------------------- axes in, axes out
 
 
-def test_what_cannot_be_drawn_is_told_in_one_line(run, monkeypatch, told):
+def test_what_cannot_be_drawn_is_reported_in_one_line(run, monkeypatch, refused):
     found = result({"bow_force": [0.1, 0.2], "bow_velocity": [0.1, 0.2]}, regime=[[1, 1]] * 2)
     plot, some = yehu.plot, np.zeros(99)
-    told("sample_rate", plot.spectrogram, some)
-    told("top_hz", plot.spectrogram, some, RATE, top_hz=1e6)
-    told("sound", plot.level, "a.wav")
-    told("ax", plot.level, some, RATE, ax=7)
-    told("strings_every", plot.strings, np.zeros(3), 0.0)
-    told("energy=True", plot.energy, object())
-    told("'x'", plot.regimes, found, "bow_force", "x")
-    told("two axes", plot.regimes, found, "bow_force", "bow_force")
-    told("'z'", plot.regimes, found, "bow_force", "bow_velocity", at={"z": 1.0})
-    told("bow_position", plot.schelleng, found)
-    told("bow_acceleration", plot.guettler, found)
+    refused("sample_rate", plot.spectrogram, some)
+    refused("top_hz", plot.spectrogram, some, RATE, top_hz=1e6)
+    refused("sound", plot.level, "a.wav")
+    refused("ax", plot.level, some, RATE, ax=7)
+    refused("strings_every", plot.strings, np.zeros(3), 0.0)
+    refused("energy=True", plot.energy, object())
+    refused("'x'", plot.regimes, found, "bow_force", "x")
+    refused("two axes", plot.regimes, found, "bow_force", "bow_force")
+    refused("'z'", plot.regimes, found, "bow_force", "bow_velocity", at={"z": 1.0})
+    refused("bow_position", plot.schelleng, found)
+    refused("bow_acceleration", plot.guettler, found)
     for time in (9.0, "end"):  # not within the run
-        told("time", plot.strings, run, time)
+        refused("time", plot.strings, run, time)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    told("yehu-server[plots]", plot.energy, run)
-    told("yehu-server[plots]", plot.level, some, RATE)
+    refused("yehu-server[plots]", plot.energy, run)
+    refused("yehu-server[plots]", plot.level, some, RATE)

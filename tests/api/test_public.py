@@ -46,7 +46,7 @@ def test_no_module_hides_a_public_name():
     assert run.stdout.split() == ["__version__", "body", "plot"]
 
 
-def test_all_names_are_listed_and_a_wrong_one_is_told_as_python_does():
+def test_all_names_are_listed_and_a_wrong_one_is_reported_as_python_does():
     assert sorted(yehu.__all__) == dir(yehu)
     assert yehu.YehuError is YehuError
     with pytest.raises(AttributeError, match="no attribute 'rendr'"):

@@ -12,6 +12,7 @@ from pitch import cents, pitch_of
 
 import yehu_server as yehu
 from yehu_server import Note
+from yehu_server.api.notes import score_of
 
 RATE = 44100
 PHRASE = [("F4", 0.0, 0.3), ("A4", 0.3, 0.3), ("C5", 0.6, 0.4)]
@@ -60,7 +61,7 @@ def test_it_is_the_sound_of_the_command(plain, tmp_path, monkeypatch, command, o
     np.testing.assert_array_equal(found.sound, expected)
 
 
-def test_what_could_not_be_played_as_written_is_told(tmp_path):
+def test_what_could_not_be_played_as_written_is_reported(tmp_path):
     low = midi_file(tmp_path / "low.mid", notes((0.0, 0.2, 40, 90)))
     assert yehu.render(low).warnings == ("moved to fit F4 to F6: three octaves up",)
     damaged = tmp_path / "damaged.mid"
@@ -78,13 +79,13 @@ def test_it_is_saved_and_read_again(tune, tmp_path):
         assert np.abs(again - found.sound).max() < 2.0**-22
 
 
-def test_what_cannot_be_saved_is_told(tune, tmp_path, monkeypatch, told):
+def test_what_cannot_be_saved_is_reported(tune, tmp_path, monkeypatch, refused):
     monkeypatch.chdir(tmp_path)
     before, found = sorted(tmp_path.iterdir()), yehu.render(tune, tail=0.0)
-    told("mp3", found.save, "a.mp3")
-    told("nowhere", found.save, "nowhere/a.wav")
-    told("float", found.save, "a.flac", subtype="float")
-    told("subtype", found.save, "a.wav", subtype="8")
+    refused("mp3", found.save, "a.mp3")
+    refused("nowhere", found.save, "nowhere/a.wav")
+    refused("float", found.save, "a.flac", subtype="float")
+    refused("subtype", found.save, "a.wav", subtype="8")
     assert sorted(tmp_path.iterdir()) == before
 
 
@@ -117,10 +118,16 @@ def test_notes_come_in_any_form():
         np.testing.assert_array_equal(yehu.render(same, tail=0.0).sound, expected)
 
 
+def test_a_note_ends_where_the_next_one_of_its_key_begins():
+    rows = [("A4", 0.0, 1.0), ("C5", 0.2, 0.1), (69.3, 0.5, 0.2), ("A4", 0.8, 0.3)]
+    ends = [each.time_s for each in score_of(rows).events if each.message.type == "note_off"]
+    assert ends == pytest.approx([0.3, 0.5, 0.7, 1.1])
+
+
 # ---------------------------------------------------------------- what is refused
 
 
-def test_a_wrong_score_is_told_in_one_line(told):
+def test_a_wrong_score_is_reported_in_one_line(refused):
     for score, names in (
         ("/no/such.mid", "such.mid"),
         (7, "score"),
@@ -136,16 +143,16 @@ def test_a_wrong_score_is_told_in_one_line(told):
         (np.zeros((2, 7)), "note 0"),
         (np.array([[65.0, np.nan, 1.0]]), "start"),
     ):
-        told(names, yehu.render, score)
+        refused(names, yehu.render, score)
 
 
-def test_a_wrong_option_is_told_in_one_line(tune, told):
+def test_a_wrong_option_is_reported_in_one_line(tune, refused):
     for name, wrong in (
         *(("phrasing", 2.0), ("tail", -1.0), ("gain_db", 90.0), ("channels", [0])),
         *(("channels", 3), ("mapping", 3), ("song", 0), ("song", 5)),
     ):
-        told(name, yehu.render, tune, **{name: wrong})
+        refused(name, yehu.render, tune, **{name: wrong})
     for name, wrong in (("out_of_range", "drop"), ("mapping", "no-such"), ("preset", "loud")):
-        told(wrong, yehu.render, tune, **{name: wrong})
+        refused(wrong, yehu.render, tune, **{name: wrong})
     with pytest.raises(TypeError, match="prset"):  # as Python does
         yehu.render(tune, prset="flautando")

@@ -49,7 +49,7 @@ def test_a_control_may_have_a_value_for_each_sample_or_an_array_of_points():
     np.testing.assert_array_equal(*(each.arrays["bow_force"] for each in runs))
 
 
-def test_a_run_is_saved_by_any_path_and_told_in_a_line(tmp_path):
+def test_a_run_is_saved_by_any_path_and_reported_in_a_line(tmp_path):
     run = yehu.simulate(GESTURE)
     run.save(str(tmp_path / "run.npz"))
     assert np.load(tmp_path / "run.npz")["time"].shape == run.arrays["time"].shape
@@ -81,7 +81,7 @@ def test_a_run_is_a_data_set_with_units_coordinates_and_where_it_came_from():
     assert other.to_xarray().sha256 != told["sha256"]
 
 
-def test_an_array_of_another_length_or_a_wrong_gesture_is_refused(told):
+def test_an_array_of_another_length_or_a_wrong_gesture_is_refused(refused):
     force, short = {"bow_force": np.ones(90)}, {"duration": 0.05}
     for gesture, names in (
         (short | {"controls": {"bow_force": np.ones(100)}}, "100 samples, but 0.05 s"),
@@ -95,8 +95,8 @@ def test_an_array_of_another_length_or_a_wrong_gesture_is_refused(told):
         ("/no/such.json", "such.json"),
         (7, "gesture"),
     ):
-        told(names, yehu.simulate, gesture)
-        told(names, yehu.sweep, gesture, {"press_force": [0.0, 1.0]})
+        refused(names, yehu.simulate, gesture)
+        refused(names, yehu.sweep, gesture, {"press_force": [0.0, 1.0]})
 
 
 # ---------------------------------------------------------------- sweep
@@ -133,12 +133,12 @@ def test_a_labelled_dataset_has_names_values_and_units(swept, tmp_path):
     assert units == {"instrument.bow.K_h": "N/m", "bow_acceleration": "m s-2"}
 
 
-def test_without_xarray_one_line_says_what_to_install(swept, monkeypatch, told):
+def test_without_xarray_one_line_says_what_to_install(swept, monkeypatch, refused):
     monkeypatch.setitem(sys.modules, "xarray", None)
-    told("yehu-server[lab]", swept[0].to_xarray)
+    refused("yehu-server[lab]", swept[0].to_xarray)
 
 
-def test_wrong_values_are_told_in_one_line(told):
+def test_wrong_values_are_reported_in_one_line(refused):
     many = {"bow_force": np.linspace(0, 1, 1001), "press_force": np.linspace(0, 1, 1000)}
     for vary, names in (
         ({}, "vary"),
@@ -149,4 +149,4 @@ def test_wrong_values_are_told_in_one_line(told):
         ({"bow_acceleration": [1.0]}, "bow_velocity"),
         (many, "runs"),
     ):
-        told(names, yehu.sweep, {"duration": 0.05}, vary)
+        refused(names, yehu.sweep, {"duration": 0.05}, vary)

@@ -172,7 +172,7 @@ def test_what_was_made_for_something_else_is_left_alone(kept, tmp_path, caplog):
     assert caplog.messages == []
 
 
-def test_a_damaged_file_is_told_and_left_alone(kept, tmp_path, caplog):
+def test_a_damaged_file_is_reported_and_left_alone(kept, tmp_path, caplog):
     file = machine_code.file_in(tmp_path)
     sizes = json.loads(kept.partition(b"\n")[0])["functions"]
     renamed = changed(kept, functions=[[name, "another", size] for name, _, size in sizes])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
@@ -57,47 +56,3 @@ def test_a_site_with_a_broken_link_is_not_written(build, tmp_path, capsys, link)
     assert "none" in capsys.readouterr().err
     assert "whole" in (tmp_path / "site" / "index.html").read_text()
     assert names_in(tmp_path) == {"site", "source"}
-
-
-# ---------------------------------------------------------------- notebooks
-
-
-def code(source, *outputs):
-    return {
-        "cell_type": "code", "source": source, "outputs": list(outputs), "metadata": {},
-        "execution_count": None,
-    }  # fmt: skip
-
-
-TITLE = {"cell_type": "markdown", "source": ["# A note\n", "\n", "Some words."], "metadata": {}}
-
-
-@pytest.fixture
-def notebooks(monkeypatch, tmp_path):
-    """The module, with notebooks in a folder for a test; and how to write one there."""
-    monkeypatch.syspath_prepend(HOOKS.parent)
-    import notebooks as module
-
-    monkeypatch.setattr(module, "FOLDER", tmp_path)
-
-    def written(*cells) -> Path:
-        (tmp_path / "note.ipynb").write_text(
-            json.dumps({"cells": cells, "metadata": {}, "nbformat": 4})
-        )
-        return tmp_path / "note.ipynb"
-
-    return module, written
-
-
-@pytest.mark.slow
-def test_notebooks_are_run_and_their_outputs_shown(notebooks, tmp_path, monkeypatch, capfd):
-    module, written = notebooks
-    path = written(TITLE, code("print(20 + 22)"))
-    module.run_all(tmp_path / "run")
-    monkeypatch.setenv("YEHU_NOTEBOOKS", str(tmp_path / "run"))
-    assert "```text\n42\n```" in module.shown(path)[0]
-    assert json.loads(path.read_text())["cells"][1]["outputs"] == []
-    written(code("1 / 0"))
-    with pytest.raises(YehuError, match=r"note\.ipynb: does not run"):
-        module.run_all(tmp_path / "failing")
-    assert "ZeroDivisionError" in capfd.readouterr().err

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 import soundfile
 from live.page.browser import drive, missing, running
-from markdown_it import MarkdownIt
 from pages import PAGES, ROOT
 
 import yehu_server as yehu
@@ -22,10 +20,6 @@ HERE = Path(__file__).parent
 # Wide tables, wide code, pictures, a page of the interface, a notebook.
 WIDEST = ["index.html", "derivation.html", "notation.html", "osc.html", "parameters.html"]
 WIDEST += ["mappings.html", "api/render.html", "notebooks/1_first_sound.html"]
-PROSE = [page for page in PAGES if not re.search(r"^::: ", page.text, re.MULTILINE)]
-# What GitHub makes of Markdown and the site has to make, too.
-STRUCTURE = {"blockquote", "em", "h1", "h2", "h3", "h4", "img", "li", "ol", "pre", "strong"}
-STRUCTURE |= {"table", "td", "th", "tr", "ul"}
 
 
 class Elements(HTMLParser):
@@ -66,29 +60,6 @@ def site(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def content(site):
     return lambda name: Elements((site / name).read_text(encoding="utf-8"))
-
-
-@pytest.fixture(scope="module")
-def place():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "scripts" / "documentation")
-        import hooks
-
-        return lambda page: hooks.place(page.name).replace("README.md", "index.md")[:-3] + ".html"
-
-
-@pytest.mark.slow
-def test_a_page_reads_on_the_site_as_on_github(subtests, content, place):
-    for page in PROSE:
-        with subtests.test(page.name):
-            github = Elements(MarkdownIt("commonmark").enable("table").render(page.text))
-            expected = Counter(tag for tag, _ in github.found if tag in STRUCTURE)
-            here = content(place(page))
-            equations = page.text.count("\n```math\n")  # code to this reader, typeset on both
-            expected["pre"] -= equations
-            assert sum(tag == "math" for tag, _ in here.found) == equations
-            assert Counter(tag for tag, _ in here.found if tag in STRUCTURE) == expected
-            assert not re.search(r"<a [^>]*>[\w/.-]+\.md</a>", here.text)
 
 
 def test_a_page_begins_with_its_one_title_and_says_what_it_is_for(subtests):

@@ -1,52 +1,37 @@
-"""Some moments of fuzzing, and the fuzzer itself: it reports each finding once."""
+"""A moment of fuzzing by hypothesis: seeds with some bytes changed, and any bytes."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
+import importlib
 
 import pytest
-from fuzz import bounds
-from fuzz.findings import broken
-from fuzz.target import ROOT, Target
+from fuzz.target import MOST_BYTES, TARGETS, Target
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
-RUN = Path(__file__).parent / "run.py"
-TARGETS_TAKE_S = 0.2  # each; scripts/test --all takes ten minutes
+
+def inputs(target: Target) -> st.SearchStrategy[bytes]:
+    """Any bytes, and the target's seeds with some bytes changed."""
+    seeds = list(target.seeds().values())
+    pieces = st.binary(max_size=8)
+    if target.words:
+        pieces |= st.sampled_from(target.words)
+    changes = st.lists(st.tuples(st.floats(0.0, 1.0), st.integers(0, 16), pieces), max_size=6)
+    return st.binary(max_size=200) | st.builds(changed, st.sampled_from(seeds), changes)
+
+
+def changed(data: bytes, changes: list[tuple[float, int, bytes]]) -> bytes:
+    """The data with some bytes at each place (0 to 1) replaced by others."""
+    for where, count, piece in changes:
+        at = round(where * len(data))
+        data = data[:at] + piece + data[at + count :]
+    return data[:MOST_BYTES]
 
 
 @pytest.mark.slow
-def test_a_moment_of_fuzzing_each_finds_nothing(tmp_path):
-    engine = ("--engine", "hypothesis")  # atheris takes a second at least
-    words = [sys.executable, RUN, *engine, "--seconds", TARGETS_TAKE_S, "--findings", tmp_path]
-    done = subprocess.run(
-        [str(word) for word in words], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert not list(tmp_path.iterdir())
-
-
-# ---------------------------------------------------------------- the fuzzer
-
-
-def test_an_input_that_takes_too_long_is_a_finding(monkeypatch):
-    monkeypatch.setattr(bounds, "MOST_CPU_S", 0.05)
-
-    def patient(data: bytes) -> None:
-        while data:
-            try:
-                sum(range(1000))
-            except Exception:  # noqa: BLE001, S112 - as a reader that suppresses much
-                continue
-
-    assert isinstance(broken(Target("patient", patient), b"x"), bounds.TooSlowError)
-
-
-@pytest.mark.skipif(not bounds.STATM.exists(), reason="memory is bounded on Linux only")
-def test_an_input_that_takes_too_much_memory_is_a_finding():
-    def greedy(data: bytes) -> None:
-        assert bytearray(len(data) << 32)  # more than any bound
-
-    assert isinstance(broken(Target("greedy", greedy), b"x"), MemoryError)
-    assert broken(Target("greedy", greedy), b"") is not None
-    assert bytearray(1 << 28)  # the bound holds for the input only
+def test_each_reader_keeps_its_contract_for_any_bytes(subtests):
+    importlib.import_module("fuzz.targets")
+    for target in TARGETS.values():
+        with subtests.test(target.name):
+            quickly = settings(max_examples=50, suppress_health_check=list(HealthCheck))
+            quickly(given(inputs(target))(target.check.__func__))(target)

@@ -208,7 +208,7 @@ def test_an_answer_that_is_no_sounds_is_refused_and_nothing_written(made, tmp_pa
 # ---------------------------------------------------------------- what goes wrong
 
 
-def test_sounds_that_cannot_be_made_are_told_and_the_others_made(command, tmp_path):
+def test_sounds_that_cannot_be_made_are_reported_and_the_others_made(command, tmp_path):
     # All but a single note would last too long.
     draw = "[draw]\nnotes = {choose = [1, 31, 32]}\nlength = 9.5\ngap = 10\n"
     (tmp_path / "d.toml").write_text(f'kind = "notes"\ncount = 4\nseed = 6\n{draw}')

@@ -94,7 +94,7 @@ def test_signals_of_another_sweep_are_kept_unless_they_may_be_overwritten(
     assert names == {"0.npz", "mine.npz", "study.json"}
 
 
-def test_a_wrong_call_is_told_in_a_line_before_anything_runs(gesture, study, tmp_path, refused):
+def test_a_wrong_call_is_reported_in_a_line_before_anything_runs(gesture, study, tmp_path, refused):
     refined = tmp_path / "refined.toml"
     refined.write_text(STUDY + '[refine]\naxes = ["force"]\nlevels = 1\n')
     for words, wrong in (
@@ -148,7 +148,7 @@ def test_a_result_is_drawn(found, tmp_path, column):
     assert len(picture) > 10_000
 
 
-def test_what_cannot_be_drawn_is_told(found, tmp_path, monkeypatch, refused):
+def test_what_cannot_be_drawn_is_reported(found, tmp_path, monkeypatch, refused):
     pytest.importorskip("matplotlib")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.png").write_text("mine")

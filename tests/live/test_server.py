@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import socket
-import time
 
 import pytest
 from wire import f32
@@ -14,25 +13,6 @@ from yehu_server.live.network import Allowed
 from yehu_server.live.osc.open_sockets import open_both
 
 HOST = "127.0.0.1"
-
-
-def test_a_message_is_heard_a_constant_time_after_it_came(live, busy):
-    client = live.client()
-    delays = []
-    with busy():
-        for number in range(30):
-            # The delay follows the device's period, which grows on a machine that is held up.
-            delay = live.player.delay
-            before = live.instrument.frame_at(time.monotonic_ns())
-            client.send("/bow/position", 0.1 + 0.001 * number)
-            after = live.instrument.frame_at(time.monotonic_ns())
-            client.wait_for("/bow/position")
-            moves = [frame for frame, address, _ in live.settle() if address == "/bow/position"]
-            delays.append((moves[0] - before, moves[0] - after, delay))
-    # Hardly any is early, as the delay itself may change. On a busy machine many are late; not all.
-    early = [1 for most, _, delay in delays if delay > most + 1]
-    on_time = [1 for _, least, delay in delays if least <= delay]
-    assert len(early) < 3 < len(on_time), delays
 
 
 @pytest.mark.parametrize("kind", ["udp", "prefixed", "slip"])

@@ -90,6 +90,10 @@ def test_a_morph_begins_and_ends_at_the_very_values():
     third = {address: param.from_unit(1.0 / 3.0) for address, param in POSSIBLE.items()}
     for amount, values in ((0.0, one.values), (-3.0, one.values), (1.0, third), (7.0, third)):
         assert morph(one, Preset("other", third), amount) == values
+    choices = [address for address, param in POSSIBLE.items() if param.is_choice]
+    for amount, values in ((0.49, one.values), (0.5, third)):
+        found = morph(one, Preset("other", third), amount)
+        assert [found[address] for address in choices] == [values[address] for address in choices]
 
 
 def test_a_morph_never_leaves_the_range():

@@ -75,7 +75,7 @@ def test_a_finger_of_the_left_hand_plucks_farther_from_the_bridge_and_softer(pla
     assert 0.5 * abs(right[1]) < abs(left[1]) < abs(right[1])
 
 
-def test_more_pressure_plucks_harder_and_as_hard_again_where_it_is_told(player, listener):
+def test_more_pressure_plucks_harder_and_as_hard_again_where_it_is_sent(player, listener):
     player.write("/playing/pizzicato", 1.0)
     player.write("/pluck/position", 0.5)
     for pressure in (0.3, 0.6, 0.6):

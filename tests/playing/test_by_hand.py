@@ -39,7 +39,7 @@ def test_the_bow_follows_the_finger_to_the_other_string_until_it_is_lifted(playe
 # ---------------------------------------------------------------- what is told, and how loud it is
 
 
-def test_the_pitch_drawn_by_hand_is_told_while_the_bow_is_on_the_string(player):
+def test_the_pitch_drawn_by_hand_is_reported_while_the_bow_is_on_the_string(player):
     """It is where the last note left the finger."""
     player.slide(69.5)
     assert player.pitch is None  # nobody bows yet

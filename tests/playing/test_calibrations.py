@@ -62,7 +62,7 @@ def test_what_was_measured_once_is_kept(kept, caplog):
     assert not caplog.messages
 
 
-def test_a_damaged_calibration_is_measured_anew_and_told_in_one_line(kept, caplog):
+def test_a_damaged_calibration_is_measured_anew_and_reported_in_one_line(kept, caplog):
     kept.ask()
     whole = kept.file.read_bytes()
     absurd = json.dumps(asdict(replace(MEASURED, tensions=(50.0, 200.0)))).encode()
@@ -87,7 +87,7 @@ def test_a_damaged_calibration_is_measured_anew_and_told_in_one_line(kept, caplo
         assert told in line
 
 
-def test_on_a_full_disk_it_is_measured_and_told_in_one_line(kept, caplog, monkeypatch):
+def test_on_a_full_disk_it_is_measured_and_reported_in_one_line(kept, caplog, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 

@@ -97,7 +97,7 @@ target = "/playing/vibrato"
     assert "# the left one" in file.read_text()
 
 
-def test_a_file_that_was_broken_meanwhile_stays_and_is_told_of(tmp_path):
+def test_a_file_that_was_broken_meanwhile_stays_and_is_reported(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text('name = "mine"\n')
     mapping = load(str(file))
@@ -155,7 +155,7 @@ def binds(mapping: Mapping) -> set[tuple]:
     return {(bind.source, bind.target, bind.span) for bind in mapping.binds}
 
 
-def test_what_learning_takes_is_told_and_comes_back_also_after_a_new_start(file):
+def test_what_learning_takes_is_reported_and_comes_back_also_after_a_new_start(file):
     before = load(str(file))
     mapping = taught(before, "/playing/vibrato", "cc 20")
     assert changes(before, mapping) == [("cc 5", "/playing/vibrato")]
@@ -205,7 +205,7 @@ def test_a_learned_bind_comes_back_where_it_was_changed_by_hand(file):
         assert again.binds == (before.binds if change else ()), change
 
 
-def test_what_is_wrong_in_what_is_kept_is_told_with_its_place(file, capsys):
+def test_what_is_wrong_in_what_is_kept_is_reported_with_its_place(file, capsys):
     kept = '[[bind]]\nsource = "cc 20"\ntarget = "/playing/vibrato"\n[[bind.replaces]]\n'
     file.write_text(f'name = "mine"\n{kept}source = "cc 500"\ntarget = "/output/gain"\n')
     assert main(["mappings", "check", str(file)]) == 2

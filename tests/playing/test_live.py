@@ -84,7 +84,7 @@ def test_a_note_that_is_ended_before_it_begins_does_not_hang(live, instrument, e
     assert instrument.target("/bow/speed") == 0.0
 
 
-def test_what_was_set_is_told_until_it_is_reached_and_then_what_became_of_it(live, instrument):
+def test_what_was_set_is_reported_until_it_is_reached_and_then_what_became_of_it(live, instrument):
     live.set("/bow/speed", 0.11, frame=500)
     live.key_on(67.0, 90.0, frame=600)
     assert live.value("/bow/speed") == 0.11

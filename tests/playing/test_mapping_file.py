@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import tomllib
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from yehu_server.errors import MappingError
 from yehu_server.params.spec import Curve
@@ -17,7 +13,6 @@ from yehu_server.playing.mapping import load, mapping_folder, user_mappings
 from yehu_server.playing.mapping_file import read_mapping_file
 from yehu_server.playing.mapping_writer import canonical
 from yehu_server.util.documents import MAX_ERRORS
-from yehu_server.util.parsing import lines_of
 
 BIND = '[[bind]]\nsource = "cc 4"\ntarget = "/playing/pressure"\n'
 FULL = """\
@@ -157,7 +152,9 @@ def test_an_error_names_its_line(subtests, read):
             assert all(line.isprintable() for line in lines)
 
 
-def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines_unless_there_are_very_many(read):
+def test_all_errors_of_a_file_are_reported_in_the_order_of_its_lines_unless_there_are_very_many(
+    read,
+):
     wrong = FULL.replace("0.9]", "9]").replace("cc 1/33", "cc 1/34").replace("= 50", "= -1")
     with pytest.raises(MappingError) as caught:
         read(wrong.replace('name = "mine"', "mpe = 2"))
@@ -166,64 +163,6 @@ def test_all_errors_of_a_file_are_told_in_the_order_of_its_lines_unless_there_ar
     with pytest.raises(MappingError) as caught:
         read(BIND.replace("pressure", "presure") * 200)
     assert len(caught.value.more) == MAX_ERRORS - 1
-
-
-keys = st.text("ab-_1", min_size=1, max_size=3) | st.text("a.\"'=[]{}#\\ ", max_size=4).map(
-    json.dumps
-)
-values = st.sampled_from(
-    [
-        '"x # [[bind]]"',
-        "'='",
-        '"""\n[a]\nb = 1\n"""',
-        "'''\n'\n'''",
-        '"\\""',
-        "1",
-        "[ # ]\n [1,\n2]]",
-    ]
-)
-statements = st.one_of(
-    st.just(""),
-    st.just("# a = 1"),
-    st.tuples(keys, values).map(" = ".join),
-    st.tuples(keys, keys).map(lambda pair: f"{pair[0]}.{pair[1]} = {{inline = '}}', b = [1]}}"),
-    keys.map(lambda key: f"[{key}]"),
-    st.sampled_from(["[[bind]]", "[[ bind ]] # x", "[bind.sub]", "[[bind.more]]", "[a.b]"]),
-)
-
-
-@given(st.lists(statements, max_size=12), st.booleans())
-def test_lines_are_those_where_the_entries_are(parts, is_dos):
-    text = ("\r\n" if is_dos else "\n").join(parts)
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError:
-        return
-    lines = lines_of(text)
-    assert set(_ways(data)) <= set(lines)
-    rows = text.replace("\r\n", "\n").split("\n")
-    for way, line in lines.items():
-        name = next(part for part in reversed(way) if isinstance(part, str))
-        assert name in rows[line - 1] or json.dumps(name) in rows[line - 1]
-    # Cutting at a line removes the entries at it and below.
-    for way, line in lines.items():
-        try:
-            above = lines_of("\n".join(rows[: line - 1]))
-        except tomllib.TOMLDecodeError:
-            continue
-        assert way not in above
-
-
-def _ways(data, way=()):
-    """The paths of entries in tables and arrays of tables, except those within one line."""
-    for name, value in data.items():
-        yield (*way, name)
-        if isinstance(value, dict) and "inline" not in value:
-            yield from _ways(value, (*way, name))
-        if isinstance(value, list) and isinstance(value[0], dict):
-            for place, table in enumerate(value):
-                yield (*way, name, place)
-                yield from _ways(table, (*way, name, place))
 
 
 # ---------------------------------------------------------------- bases

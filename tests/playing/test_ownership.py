@@ -115,7 +115,7 @@ def test_a_value_out_of_range_is_clamped_and_returned(player, listener):
     assert player.write("/playing/speed", 99.0) == player.value("/playing/speed") == 0.6
 
 
-def test_what_bow_and_fingers_are_told_is_where_a_write_or_a_note_moved_them_last(player):
+def test_bow_and_fingers_are_sent_where_a_write_or_a_note_moved_them_last(player):
     assert player.value("/bow/speed") == 0.0
     player.note_on(key(75))
     assert player.value("/bow/speed") == 0.2

@@ -35,7 +35,7 @@ def test_presets_of_the_players_own_go_together_with_others(presets):
     assert both.unknown == ("/room/dcay",)
 
 
-def test_a_name_that_is_none_is_told_and_so_many_do_not_go_together(presets):
+def test_a_name_that_is_none_is_reported_and_so_many_do_not_go_together(presets):
     for wrong in ("hall+", "+hall", "hall++dry", "hall+cellar", "hall+../x"):
         with pytest.raises(PresetError):
             presets.find(wrong)

@@ -43,7 +43,7 @@ class Posted(NamedTuple):
     other: float
 
 
-class Told:
+class Kept:
     """An instrument of a part that only keeps what it is told.
 
     The first of the part leads it: what is posted there is interpreted at once, for all of them.
@@ -51,7 +51,7 @@ class Told:
 
     is_live, frame, rate, spec = False, 0, RATE, InstrumentSpec(44100.0)
 
-    def __init__(self, number: int, part: list[Told]) -> None:
+    def __init__(self, number: int, part: list[Kept]) -> None:
         self.address, self._part = number * RIG_BYTES, part
         self._midi, self.tables = np.zeros(1, MIDI), np.zeros(SLOTS, TABLES)
         self.posted = 0
@@ -115,8 +115,8 @@ kinds_of_settings = (kinds.WRITE, kinds.HOLD, kinds.EXPRESS)
 
 
 def section(people: int, playing: PlayingOptions | None = None) -> SimpleNamespace:
-    told: list[Told] = []
-    told += [Told(number, told) for number in range(people)]
+    told: list[Kept] = []
+    told += [Kept(number, told) for number in range(people)]
     return SimpleNamespace(told=told, commands=(playing or PlayingOptions()).player(told))
 
 

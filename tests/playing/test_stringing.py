@@ -97,7 +97,7 @@ def test_notes_above_those_of_a_yehu_begin_in_tune(erhu):
         assert off == pytest.approx(0.0, abs=8.0), note
 
 
-def test_what_an_erhu_does_not_have_is_told_by_its_own_range(erhu):
+def test_what_an_erhu_does_not_have_is_reported_by_its_own_range(erhu):
     with pytest.raises(YehuError, match=r"D4 to A6 \(62 to 93\)"):
         erhu.note_on("C7")
     found = yehu.render([("D4", 0.0, 0.3), ("C4", 0.3, 0.3)], instrument=ERHU, tail=0.0)

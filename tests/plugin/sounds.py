@@ -1,9 +1,7 @@
 """Scripts for hosts, what the library makes of them, and what can be measured in a sound."""
 
 import ctypes
-from pathlib import Path
 
-import mido
 import numpy as np
 
 PHRASE = [
@@ -18,28 +16,11 @@ PHRASE = [
     (72000, 0xB0, 64, 0),
 ]
 FRAMES = 90000
-TICKS = 1920  # of a beat of half a second: all frames above are whole ticks
-TICK_FRAMES = 24000 / TICKS
 
 
 def script(messages, scale=1.0):
     """Lines of a script that play messages, each a frame and three bytes."""
     return [f"{round(frame * scale)} midi {a} {b} {c}" for frame, a, b, c in messages]
-
-
-def write_midi(path: Path, messages, frames) -> Path:
-    """Write messages, each a frame and three bytes, to a MIDI file that lasts so many frames."""
-    file = mido.MidiFile(type=0, ticks_per_beat=TICKS)
-    track, tick = file.add_track(), 0
-    end = mido.MetaMessage("end_of_track")
-    timed = [(frame, mido.Message.from_bytes(message)) for frame, *message in messages]
-    for frame, message in [*timed, (frames, end)]:
-        at = frame / TICK_FRAMES
-        assert at == int(at)
-        track.append(message.copy(time=int(at) - tick))
-        tick = int(at)
-    file.save(path)
-    return path
 
 
 def prepared(path, rate=48000.0):

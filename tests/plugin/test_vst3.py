@@ -62,27 +62,3 @@ def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, show
     assert raw(other, "Room size").string_value == "25 m"  # by the preset, which is a hall
     assert raw(other, "Mapping").string_value == shown["/mapping"].choices[-1]
     assert level_db(played(other)) == pytest.approx(level_db(quiet), abs=0.5)
-
-
-def test_dawdreamer_plays_and_automates_it(built):
-    dawdreamer = pytest.importorskip("dawdreamer", reason="there is no dawdreamer")
-    engine = dawdreamer.RenderEngine(48000, 256)
-    synth = engine.make_plugin_processor("yehu", str(built / "Yehu.vst3"))
-    synth.add_midi_note(69, 96, 0.1, 1.8)
-    engine.load_graph([(synth, [])])
-    sounds = []
-    for _ in range(2):
-        engine.render(2.0)
-        sounds.append(engine.get_audio().copy())
-    assert np.array_equal(*sounds)
-    number = next(
-        each["index"]
-        for each in synth.get_parameters_description()
-        if each["name"] == "Output gain"
-    )
-    synth.set_automation(number, np.linspace(0.714, 0.0, 96000).astype(np.float32))
-    engine.render(2.0)
-    moved = engine.get_audio()
-    parts = [(moved[:, a:b], sounds[0][:, a:b]) for a, b in ((9600, 14400), (80000, 96000))]
-    changes = [level_db(one) - level_db(other) for one, other in parts]
-    assert changes[0] > changes[1] + 20.0

@@ -80,7 +80,7 @@ def test_one_at_a_time_writes_to_a_folder(tmp_path):
         pass
 
 
-def test_a_pipe_for_a_lock_is_told_at_once(tmp_path):
+def test_a_pipe_for_a_lock_is_reported_at_once(tmp_path):
     (tmp_path / build_records.HIDDEN).mkdir()
     os.mkfifo(tmp_path / build_records.HIDDEN / build_records.LOCK)
     with pytest.raises(OutputError, match="cannot write"), build_records.alone_in(tmp_path):

@@ -86,7 +86,7 @@ def test_a_job_that_kills_every_worker_is_given_up(tmp_path):
     assert event.died == "killed on 1 workers"
 
 
-def test_a_job_that_raises_is_told(processes):
+def test_a_job_that_raises_is_reported(processes):
     with Cluster(str(processes.file)) as cluster:
         [event] = cluster.perform_all(some_jobs.double, [None])
     assert event.died.startswith("ended by TypeError")
@@ -167,7 +167,7 @@ def test_a_worker_of_another_version_is_refused_in_one_line(own, copy):
 
 
 @pytest.mark.slow
-def test_workers_without_the_package_are_told(own, tmp_path):
+def test_workers_without_the_package_are_reported(own, tmp_path):
     (tmp_path / "yehu_server").mkdir()
     (tmp_path / "yehu_server" / "__init__.py").touch()
     own.add_worker(PYTHONPATH=str(tmp_path))
@@ -176,14 +176,14 @@ def test_workers_without_the_package_are_told(own, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_scheduler_without_workers_is_told(own, monkeypatch):
+def test_a_scheduler_without_workers_is_reported(own, monkeypatch):
     monkeypatch.setattr(clusters, "CONNECT_S", 1.0)
     with pytest.raises(YehuError, match="the scheduler has no workers"):
         Cluster(str(own.file)).__enter__()
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_is_lost_is_told(own, monkeypatch):
+def test_a_scheduler_that_is_lost_is_reported(own, monkeypatch):
     monkeypatch.setattr(clusters, "CONNECT_S", 1.0)
     own.add_worker()
     until(lambda: workers_of(own) == 1, within_s=LONG_S)

@@ -42,3 +42,8 @@ def test_it_is_as_without_blocks_and_without_leaving_anything_out():
     assert whole > 1.1 * np.abs(sound).max()
     for block, start in itertools.product((7, 100, 3000), range(20)):  # blocks end at any place
         assert peak_of(sound[start:], block) == pytest.approx(whole, rel=1e-12)
+
+
+def test_what_the_last_samples_lead_to_counts():
+    sound = np.array([0.0, 0.5, 1.0, 1.0])
+    assert 1.05 < peak_of(sound) == peak_of(np.concatenate((sound, np.zeros(30))))

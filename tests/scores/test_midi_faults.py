@@ -1,13 +1,12 @@
-"""Every fault of MIDI files: what becomes of it, what is said, and where mido agrees."""
+"""Every fault of MIDI files: what becomes of it, and what is said."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-import mido
 import pytest
-from midi_faults import AGREES, CASES, DIFFERS, REFUSES, UNASKED, Case
+from midi_faults import CASES, Case
 from pages import page
 
 from yehu_server.errors import ScoreError
@@ -70,53 +69,3 @@ def test_a_fault_has_the_outcome_that_is_written_of_it(case: Case, written):
 def test_the_page_has_what_is_said_of_each_fault():
     rows = dict(ROW.findall(page(PAGE).text))
     assert rows == {case.name: f"`{case.says}`" if case.says else "nothing" for case in CASES}
-
-
-# ---------------------------------------------------------------- another reader
-
-
-def by_mido(path: Path) -> list[list[tuple[float, list[int]]]]:
-    """The channel messages of each song with their times, by mido."""
-    file = mido.MidiFile(path)
-    songs = [[track] for track in file.tracks] if file.type == 2 else [file.tracks]
-    theirs = []
-    for tracks in songs:
-        now, messages = 0.0, []
-        for message in mido.MidiFile(type=1, ticks_per_beat=file.ticks_per_beat, tracks=tracks):
-            now += message.time
-            if hasattr(message, "channel"):
-                messages.append((now, message.bytes()))
-        theirs.append(messages)
-    return theirs
-
-
-def by_us(path: Path, songs: int) -> list[list[tuple[float, list[int]]]]:
-    scores = [read_score(path, song=song + 1, max_duration_h=1000.0) for song in range(songs)]
-    return [
-        [(pytest.approx(event.time_s), event.message.bytes()) for event in score.events]
-        for score in scores
-    ]
-
-
-def made_by_mido(case: Case, path: Path) -> str:
-    try:
-        theirs = by_mido(path)
-    except Exception:  # noqa: BLE001 - of any kind: mido has no errors of its own
-        return REFUSES
-    try:
-        ours = by_us(path, len(theirs))
-    except ScoreError:
-        return AGREES if not any(theirs) else DIFFERS
-    if case.hears is not None and len(case.hears) > sum(map(begun, ours)):
-        return DIFFERS  # the rest is in songs that mido has not found
-    return AGREES if theirs == ours else DIFFERS
-
-
-def begun(messages: list[tuple[float, list[int]]]) -> int:
-    return sum(0x90 <= status < 0xA0 and velocity > 0 for _, (status, _, velocity) in messages)
-
-
-def test_mido_agrees_message_for_message_where_it_is_said_to(subtests, written):
-    for case in [case for case in CASES if case.mido != UNASKED]:
-        with subtests.test(case=case):
-            assert made_by_mido(case, written(case.data)) == case.mido

@@ -104,27 +104,7 @@ def test_ordinary_files_have_the_times_mido_gives_them(tmp_path):
 # ---------------------------------------------------------------- events
 
 
-def test_running_status_goes_on_after_anything(read):
-    for between in (
-        b"",
-        b"\x00\xff\x01\x02la",
-        b"\x00\xf0\x03\x01\x02\xf7",
-        b"\x00\xf7\x03\x90\x05\x05",
-        b"\x00\xff\x59\x02\x03\x00",  # a key signature
-    ):
-        score = read(midi(on(0, 60) + between + b"\x64\x3c\0" + END))
-        assert timed(score) == [(0.0, [0x90, 60, 80]), (0.5, [0x90, 60, 0])], between
-        assert score.warnings == ()
-
-
 # ---------------------------------------------------------------- chunks
-
-
-def test_a_long_header_and_unknown_chunks_are_fine(read):
-    whole = midi(extra=b"more to come", count=1)
-    whole += chunk(b"XFIH", b"\xff\x00") + chunk(b"MTrk", on(0, 60) + END) + chunk(b"abcd", b"")
-    score = read(whole)
-    assert (len(score.events), score.warnings) == (1, ())
 
 
 def test_a_track_of_any_length_whatever_hides_no_other(read):

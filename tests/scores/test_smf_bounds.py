@@ -8,7 +8,7 @@ from pathlib import Path
 
 import mido
 import pytest
-from midi_bytes import END, chunk, midi, off, on, tempo
+from midi_bytes import END, chunk, midi, on, tempo
 from midi_reading import read_file, timed
 
 from yehu_server.errors import ScoreError
@@ -93,12 +93,6 @@ def test_scores_in_a_row_start_when_the_one_before_has_passed():
         (2.0, [0x90, 62, 0]),
     ]
     assert (both.duration_s, both.name, both.warnings) == (2.5, "one + two", ("one: odd",))
-
-
-def test_a_long_silence_at_the_end_is_cut_with_a_warning(read):
-    score = read(midi(on(0, 60) + off(100, 60) + b"\xff\xff\xff\x7f\xff\x2f\x00"))
-    assert score.duration_s == pytest.approx(score.events[-1].time_s + 30.0)
-    assert score.warnings == ("silence at the end cut to 30 s, at byte 30",)
 
 
 def test_scores_in_a_row_may_not_last_longer_than_anybody_may_ask_for():

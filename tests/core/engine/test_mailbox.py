@@ -1,9 +1,6 @@
 """Commands to the instrument: rings between threads and processes, the heap in sample time."""
 
-import mmap
-import os
 import random
-import subprocess
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -11,7 +8,6 @@ from contextlib import contextmanager
 from functools import cache, partial
 from itertools import combinations, product
 
-import forks
 import numba
 import numpy as np
 import pytest
@@ -176,52 +172,6 @@ def test_commands_come_whole_and_in_order_from_thread_to_thread(make):
     assert (meters["applied"], meters["waiting"], meters["unreported"]) == (count, 0, 0)
 
 
-# ---------------------------------------------------------------- and between processes
-
-CALLBACKS = """
-import mmap, sys, threading
-import numpy as np
-from yehu_server.core.engine import native
-rig = np.frombuffer(mmap.mmap(int(sys.argv[1]), 0), np.uint8)
-out = np.zeros(64, np.float32)
-over = threading.Event()
-threading.Thread(target=lambda: (sys.stdin.read(), over.set())).start()
-while not over.is_set():
-    native.callback.call(None, out.ctypes.data, len(out), None, 0, rig.ctypes.data)
-"""
-
-
-@pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no memfd_create here")
-def test_commands_come_whole_and_in_order_to_another_process_and_its_reports_back():
-    count, size = 20_000, memory.memory_bytes(1)
-    descriptor = os.memfd_create("rig")
-    os.ftruncate(descriptor, size)
-    instrument = sound.alone(RATE, memory=mmap.mmap(descriptor, size), is_live=True).first
-    instrument.report_commands()
-    pipes = {"stdin": subprocess.PIPE, "stdout": None, "stderr": None}
-    process = forks.start(descriptor, code=CALLBACKS, pass_fds=[descriptor], **pipes)
-    os.close(descriptor)
-    posted = 0
-
-    def post_some() -> None:
-        nonlocal posted
-        for _ in range(min(500, count - posted)):
-            posted += post_numbered(instrument, posted)
-
-    try:
-        commands = collect(instrument, count, post_some)
-        process.communicate(timeout=PATIENCE_S)  # its input ends here
-    finally:
-        process.kill()
-    assert process.returncode == 0
-    assert not len(instrument.applied_commands())
-    np.testing.assert_array_equal(numbers(commands), np.arange(count))
-    assert (np.diff(commands["frame"]) >= 0).all()
-    meters = instrument.meters()
-    assert meters["applied"] == count
-    assert meters["frame"] + meters["block"] == instrument.frame == 64 * meters["callbacks"]
-
-
 # ---------------------------------------------------------------- full rings
 
 
@@ -339,21 +289,6 @@ def test_commands_apply_by_frame_and_then_as_posted_whatever_the_order_of_postin
 
 
 # ---------------------------------------------------------------- the heap: single promises
-
-
-def test_at_most_so_many_commands_apply_on_one_frame_and_the_rest_on_the_next():
-    instrument = reporting(offline())
-    for number in range(3 * APPLIED_AT_ONCE + 4):
-        post_numbered(instrument, number, 50)
-    for number in range(3 * APPLIED_AT_ONCE + 4, 3 * APPLIED_AT_ONCE + 10):
-        post_numbered(instrument, number, 51)
-    run(instrument, 100)
-    commands = instrument.applied_commands()
-    np.testing.assert_array_equal(numbers(commands), np.arange(3 * APPLIED_AT_ONCE + 10))
-    frames, counts = np.unique(commands["frame"], return_counts=True)
-    assert frames.tolist() == [50, 51, 52, 53]
-    assert counts.tolist() == [APPLIED_AT_ONCE] * 3 + [10]
-    assert instrument.meters()["late_events"] == 0  # they were posted in time
 
 
 def test_a_live_instrument_takes_in_so_many_commands_for_each_64_frames():

@@ -1,7 +1,6 @@
 """Fingers: how they land, hold, stop the string and leave."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from yehu_server.core.physics.quantities import Quantities
 YEHU = Quantities()
 FINGER = YEHU.finger
 RATE = 44100.0
-K = 1.0 / RATE
 
 
 def wave_speed(string):
@@ -69,27 +67,7 @@ def test_a_pressed_finger_stops_the_string(string, x_f):
     assert 5.0 < cents(sounding(run), ideal) < 100.0
 
 
-@pytest.mark.parametrize(("modulation", "rise"), [(0.0, (-5.0, 5.0)), (1.0, (15.0, 40.0))])
-def test_a_harder_press_raises_the_pitch_as_it_stretches_the_strings(modulation, rise):
-    yehu = replace(YEHU, tension_modulation=modulation)
-    soft, hard = (
-        play(lambda t, F=F: {**bowed(t), "press": [F]}, 0.8, ledger=False, quantities=yehu)
-        for F in (1.0, 5.0)
-    )
-    assert rise[0] < cents(sounding(hard), sounding(soft)) < rise[1]
-
-
 # --- leaving ------------------------------------------------------------------------------
-
-
-def test_a_lifted_finger_in_the_air_returns_as_a_critically_damped_spring():
-    model = kernel.prepare(YEHU, RATE)
-    state = kernel.at_rest(model)
-    state["motion"]["U"][:] = FINGER.rest_height + 3e-3
-    U = play({}, 0.05, state=state).finger(0)[:, 0] - FINGER.rest_height
-    turn = FINGER.omega_lift * K * np.arange(1, len(U) + 1)
-    assert np.abs(U - 3e-3 * (1.0 + turn) * np.exp(-turn)).max() < 0.005 * 3e-3
-    assert np.abs(U[round(0.02 * RATE) :]).max() < 0.02 * 3e-3
 
 
 def released(press, rate):
@@ -145,31 +123,3 @@ def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
 
 
 # --- the contact law ----------------------------------------------------------------------
-
-
-def test_a_finger_that_glides_drags_the_pitch_with_it():
-    def glide(t):
-        x_f = np.interp(t, [0.35, 0.5], [0.05, 0.10])
-        return {**bowed(t), "x_f": [x_f], "press": [2.0]}
-
-    force = play(glide, 1.0, ledger=False)["bridge_force"]
-    low = pitch_of(force[round(0.2 * RATE) : round(0.35 * RATE)], RATE)
-    high = pitch_of(force[round(0.7 * RATE) :], RATE)
-    assert cents(high, low) == pytest.approx(1200.0 * math.log2(0.25 / 0.20), abs=25.0)
-
-
-def test_of_two_fingers_the_one_nearer_to_the_bridge_decides_the_pitch():
-    """Legato holds the old note under the new one."""
-    old, both, new = (
-        sounding(
-            play(
-                lambda t, press=press: {**bowed(t), "x_f": [0.05, 0.10], "press": press},
-                0.8,
-                fingers=2,
-                ledger=False,
-            )
-        )
-        for press in ([2.0, 0.0], [2.0, 2.0], [0.0, 2.0])
-    )
-    assert abs(cents(both, new)) < 25.0  # it stretches the strings a little more
-    assert cents(both, old) > 300.0

@@ -3,7 +3,6 @@
 import math
 from collections import Counter
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pytest
@@ -130,45 +129,6 @@ def test_at_absurd_speeds_the_answer_stays_finite_and_within_coulombs_law():
         assert abs(free - mobility * f_b - v_r) <= 1e-12 * max(1.0, abs(free))
         # epsilon_1 |v_r| <= mu_C F_N, eq. (25), so friction is below twice the static one.
         assert abs(f_b) <= 2.0 * BOW.mu_S * F_N * (1.0 + 1e-6)
-
-
-def steady(velocity, F_N):
-    """Force of a bow that slides at a constant speed, long enough to be steady (N)."""
-    model = kernel.prepare(YEHU, RATE)[0]
-    z, tangent = 0.0, NO_TANGENT
-    for _ in range(3000):
-        # A nearly rigid string: no force changes its velocity much.
-        f_b, z_bar, v_r, tangent, *_ = solve_friction(
-            velocity, 1e-5, z, F_N, BOW.mu_S, tangent, model, 0
-        )
-        z = 2.0 * z_bar - z
-    return f_b, v_r
-
-
-def test_a_steady_slip_follows_the_stribeck_curve():
-    """f_b = mu(v) F_N with the sign of v: between the dynamic and the static coefficient."""
-    for velocity, F_N in product((0.05, 0.1, -0.3, 1.0, 5.0), (0.05, 0.7, 3.0)):
-        force, v_r = steady(velocity, F_N)
-        mu = BOW.mu_C + (BOW.mu_S - BOW.mu_C) * math.exp(-((v_r / BOW.v_s) ** 2))
-        assert v_r == pytest.approx(velocity, rel=0.01)
-        assert force == pytest.approx(math.copysign(mu * F_N, velocity), rel=1e-8)
-
-
-def test_below_breakaway_the_bristles_are_a_spring():
-    """Not a creep: pulled a little and held, the force stays epsilon_0 z for ever."""
-    model = kernel.prepare(YEHU, RATE)[0]
-    F_N, k = 1.0, 1.0 / RATE
-    z, travelled, f_b, tangent = 0.0, 0.0, 0.0, NO_TANGENT
-    breakaway = BOW.xi[0] * BOW.mu_C * F_N / BOW.epsilon_0
-    for n in range(2000):
-        velocity = 0.9 * breakaway / (100 * k) if n < 100 else 0.0
-        f_b, z_bar, v_r, tangent, *_ = solve_friction(
-            velocity, 1e-5, z, F_N, BOW.mu_S, tangent, model, 0
-        )
-        z = 2.0 * z_bar - z
-        travelled += v_r * k
-    assert 0.7 * breakaway < travelled < breakaway
-    assert f_b == pytest.approx(BOW.epsilon_0 * travelled, rel=1e-4)
 
 
 @pytest.mark.parametrize(

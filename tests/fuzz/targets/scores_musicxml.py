@@ -21,74 +21,15 @@ from yehu_server.scores.written.text import lines_of
 
 # What is played of more would take longer than reading it, and is bounded elsewhere.
 FEW_NOTES, FEW_BEATS, FEW_TEXTS = 100, 200, 2000
-MOST_CHOICES = 1024  # bytes, of a score that is built
 CONTAINER = b'<container><rootfiles><rootfile full-path="s.musicxml"/></rootfiles></container>'
 WORDS = (
     b"<measure>", b"</measure>", b"<chord/>", b"<grace/>", b"<rest/>", b"<tie type='start'/>",
     b"<backup><duration>1</duration></backup>", b"<sound tempo='60'/>", b"999999999", b"-1",
     b"<!DOCTYPE x [<!ENTITY a 'b'>]>", b"&a;", b"1e308", b"<ending number='1' type='start'/>",
+    b"<slide type='start'/>", b"<tremolo type='stop'/>", b"<wavy-line type='start'/>",
+    b"<repeat direction='backward' times='9'/>", b"<sound dalsegno='s'/>", b"<sound tocoda='c'/>",
+    b"<wedge type='stop'/>", b"<words>rit.</words>", b"<transpose><chromatic>1</chromatic>",
 )  # fmt: skip
-# What bars are built of; % stands for a number.
-NOTATIONS = (
-    "", "<slur type='start'/>", "<slur type='stop'/>", "<slide type='start'/>",
-    "<slide type='stop'/>", "<glissando type='start'/>", "<glissando type='stop'/>", "<fermata/>",
-    "<ornaments><trill-mark/><wavy-line type='start'/></ornaments>",
-    "<ornaments><wavy-line type='stop'/></ornaments>",
-    "<ornaments><tremolo>%</tremolo></ornaments>",
-    "<ornaments><tremolo type='start'/></ornaments>",
-    "<ornaments><tremolo type='stop'/></ornaments>", "<ornaments><mordent/><turn/></ornaments>",
-    "<articulations><scoop/><falloff/><staccato/></articulations>",
-    "<articulations><caesura/><breath-mark/><accent/></articulations>",
-    "<technical><harmonic/><fingering>%</fingering><string>%</string></technical>",
-    "<technical><up-bow/><snap-pizzicato/><open-string/></technical>",
-    "<dynamics><sfz/></dynamics>", "<tied type='start'/>", "<tied type='continue'/>",
-)  # fmt: skip
-OTHERS = (
-    "<backup><duration>%</duration></backup>", "<forward><duration>%</duration></forward>",
-    "</measure><measure number='%'>", "<attributes><divisions>%</divisions></attributes>",
-    "<attributes><time><beats>%</beats><beat-type>4</beat-type></time></attributes>",
-    "<attributes><key><fifths>%</fifths></key></attributes>",
-    "<attributes><transpose><chromatic>%</chromatic></transpose></attributes>",
-    "<barline><repeat direction='forward'/></barline>",
-    "<barline><repeat direction='backward' times='%'/></barline>",
-    "<barline><ending number='%' type='start'/></barline>",
-    "<barline><ending number='%' type='stop'/></barline>",
-    "<sound tempo='%'/>", "<sound dacapo='yes'/>", "<sound dalsegno='s'/>", "<sound segno='s'/>",
-    "<sound tocoda='c'/>", "<sound coda='c'/>", "<sound fine='yes'/>", "<sound dynamics='%'/>",
-    "</measure></part><part id='%'><measure>",
-)  # fmt: skip
-TYPES = (
-    "<wedge type='crescendo' number='%'/>", "<wedge type='diminuendo'/>",
-    "<wedge type='stop' number='%'/>", "<dynamics><pp/></dynamics>", "<words>rit.</words>",
-    "<words>a tempo</words>", "<words>pizz.</words>", "<words>arco</words>", "<segno/>",
-    "<words>cresc.</words>", "<words>sul pont.</words>", "<dashes type='stop'/>", "<coda/>",
-    "<metronome><beat-unit>quarter</beat-unit><per-minute>%</per-minute></metronome>",
-)  # fmt: skip
-KINDS = ("", "", "", "<chord/>", "<grace/>", "<cue/>")
-
-
-def built(program: Program) -> str:
-    """A score of bars with notes, directions and bar lines, as the bytes choose."""
-    parts = ["<score-partwise><part id='1'><measure>"]
-    while program:
-        choice = program.byte()
-        number = program.byte()
-        shown = str(number if number < 200 else (number - 220) * 10 ** (number % 12))
-        if choice < 128:
-            step = "CDEFGAB"[choice % 7]
-            notations = NOTATIONS[program.byte() % len(NOTATIONS)].replace("%", shown)
-            parts.append(
-                f"<note>{KINDS[choice % len(KINDS)]}<pitch><step>{step}</step><octave>"
-                f"{4 + choice % 3}</octave></pitch><duration>{shown}</duration><voice>"
-                f"{number % 3}</voice><notations>{notations}</notations></note>"
-            )
-        elif choice < 192:
-            parts.append(OTHERS[choice % len(OTHERS)].replace("%", shown))
-        else:
-            kind = TYPES[choice % len(TYPES)].replace("%", shown)
-            offset = f"<offset>{shown}</offset>" if choice % 2 else ""
-            parts.append(f"<direction><direction-type>{kind}</direction-type>{offset}</direction>")
-    return "".join((*parts, "</measure></part></score-partwise>"))
 
 
 def check(score: Written) -> None:
@@ -149,13 +90,6 @@ def check_again(score: Written) -> None:
 def musicxml(data: bytes) -> None:
     """A file is a score of notes in order, within bounds, that can be played, or a ScoreError."""
     check(read_musicxml(written(data, "file.musicxml")))
-
-
-@target("musicxml-built", ScoreError)
-def musicxml_built(data: bytes) -> None:
-    """Bars of any notes and directions are a score that can be played, or a ScoreError."""
-    text = built(Program(data[:MOST_CHOICES]))
-    check(read_musicxml(written(text.encode(), "file.musicxml")))
 
 
 @target("mxl", ScoreError, words=(b"PK\x03\x04", b"PK\x01\x02", b"PK\x05\x06"))

@@ -82,7 +82,7 @@ RISING = ("measured", "admittance", "frequency_hz")
         (RISING, lambda column: [*column[:-1], math.inf], "not finite"),
     ],
 )
-def test_damaged_measurements_are_told(whole_fit, tmp_path, where, change, told):
+def test_damaged_measurements_are_reported(whole_fit, tmp_path, where, change, told):
     whole_fit.save(tmp_path / "mine.json")
     data = entry = json.loads((tmp_path / "mine.json").read_text())
     for key in where[:-1]:
@@ -94,7 +94,7 @@ def test_damaged_measurements_are_told(whole_fit, tmp_path, where, change, told)
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"bridge_modes": 1}', "x"])
-def test_what_is_no_body_is_told(tmp_path, text):
+def test_what_is_no_body_is_reported(tmp_path, text):
     (tmp_path / "x.json").write_text(text)
     with pytest.raises((MeasurementError, ParameterError), match=r"x\.json"):
         read_fit(tmp_path / "x.json")

@@ -61,7 +61,7 @@ def test_channels_are_scaled_and_may_be_skipped(taps, tmp_path):
     assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
 
 
-def test_wrong_channels_are_told(taps, tmp_path):
+def test_wrong_channels_are_reported(taps, tmp_path):
     files, _ = write_taps(taps[:1], tmp_path / "taps")
     for channels, told in (
         (None, "--channels"),
@@ -139,7 +139,7 @@ def test_taps_are_read_from_tables_with_units(taps, tmp_path):
         assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2, units
 
 
-def test_wrong_tables_are_told(tmp_path, subtests):
+def test_wrong_tables_are_reported(tmp_path, subtests):
     numbers = "\n".join(f"{100 + n},1.0,2.0" for n in range(40))
     for text, told in (
         ("", "0 lines"),
@@ -163,7 +163,7 @@ def test_wrong_tables_are_told(tmp_path, subtests):
             assert "x.csv" in str(error.value)
 
 
-def test_missing_and_foreign_files_are_told(tmp_path):
+def test_missing_and_foreign_files_are_reported(tmp_path):
     for name in ("x.wav", "x.csv", "x.uff", "x.mp9"):
         for make in (bool, (tmp_path / name).mkdir):  # it is missing, and a folder
             make()
@@ -242,7 +242,7 @@ def test_taps_are_read_from_universal_files(taps, tmp_path):
     assert rms(off_db(curve.values, admittance(curve.frequency_hz))) < 0.2
 
 
-def test_a_data_set_that_ends_early_is_told(tmp_path):
+def test_a_data_set_that_ends_early_is_reported(tmp_path):
     path = universal(tmp_path / "y.uff", data_set(Y))
     lines = path.read_text().splitlines()
     path.write_text("\n".join([*lines[:-20], lines[-1]]) + "\n")

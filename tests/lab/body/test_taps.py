@@ -45,7 +45,7 @@ def test_one_recording_may_hold_several_taps(taps):
         assert np.abs(own.force).max() == pytest.approx(np.abs(tap.force).max(), rel=0.01)
 
 
-def test_what_is_no_tap_is_told():
+def test_what_is_no_tap_is_reported():
     force = half_sine(3e-4)[0]
     for channels, told in (
         ({"force": np.zeros(9000), "velocity": np.ones(9000)}, "no hit"),
@@ -92,7 +92,7 @@ def test_a_double_hit_is_seen(taps):
         assert "the hammer hit twice" in looked_at(hit_twice(taps[0], after_s, size)).faults
 
 
-def test_strings_that_are_not_damped_are_told_from_drift_and_hum(taps):
+def test_strings_that_are_not_damped_are_no_drift_or_hum(taps):
     """Strings of 349 Hz and its octave, 30 dB below the body, that ring for seconds."""
 
     def strings(time):

@@ -35,6 +35,12 @@ def test_chance_of_one_name_tells_nothing_of_another_seed_number_or_name():
         assert abs(np.corrcoef(ones, others)[0, 1]) < 5.0 / math.sqrt(MANY)
 
 
+def test_whole_draws_are_as_often_each_number_from_one_end_to_the_other():
+    values, counts = np.unique(drawn({"from": 1, "to": 3, "spacing": "whole"}), return_counts=True)
+    assert values.tolist() == [1.0, 2.0, 3.0]
+    assert counts / MANY == pytest.approx(1 / 3, abs=0.03)
+
+
 def test_choices_have_their_weights():
     values, counts = np.unique(
         drawn({"choose": [1, 5, 9], "weights": [1, 0, 3]}), return_counts=True

@@ -70,7 +70,7 @@ def test_the_note_of_a_gesture_is_that_of_its_string_and_finger():
     assert strokes["frequency_hz"][0] == pytest.approx(345, rel=0.02)
 
 
-def test_what_cannot_be_varied_is_told(subtests):
+def test_what_cannot_be_varied_is_reported(subtests):
     for vary, wrong in [
         ({"bow_force": [0.1, 99.0]}, "bow_force: 99.0 is not within"),
         ({"bow_farce": [1.0]}, "bow_farce: unknown entry"),

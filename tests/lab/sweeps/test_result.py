@@ -29,7 +29,7 @@ def test_xarray_has_names_values_and_units(result):
     assert int(at["regime"]) == result.grid("regime")[-1, 0]
 
 
-def test_a_damaged_or_another_file_is_told_in_a_line(tmp_path, result):
+def test_a_damaged_or_another_file_is_reported_in_a_line(tmp_path, result):
     target = tmp_path / "mine.npz"
     result.save(target)
     whole = target.read_bytes()
@@ -67,7 +67,7 @@ def test_a_small_file_that_claims_much_is_refused_before_it_is_read(tmp_path, re
     assert taken == []
 
 
-def test_flattening_is_told_against_the_median_of_the_same_note():
+def test_flattening_is_measured_against_the_median_of_the_same_note():
     pitches = np.array([[440.0, 438.0, 436.0, 200.0], [880.0, 880.0, 870.0, 870.0]])
     columns = {name: np.zeros(8) for name in COLUMNS}
     columns |= {"pitch_hz": pitches.reshape(-1), "regime": np.array([2, 2, 2, 3, 2, 2, 2, 2])}

@@ -103,7 +103,7 @@ def test_a_task_of_a_cluster_finds_what_a_thread_finds_or_tells_what_is_wrong(da
     assert "note: 12" in perform((text, numbers.tobytes()))
 
 
-def test_what_a_stranger_answers_is_no_finding_and_workers_that_die_are_told(data, result):
+def test_what_a_stranger_answers_is_no_finding_and_workers_that_die_are_reported(data, result):
     def answers(answer):
         """A cluster that answers a task with something made of what this machine finds."""
 

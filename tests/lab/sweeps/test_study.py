@@ -32,7 +32,7 @@ def test_a_study_is_the_same_from_its_text_and_another_by_the_order_of_its_axes(
     assert key_of_study(study_of(turned)) != key_of_study(study) == key_of_study(again)
 
 
-def test_what_is_wrong_in_a_study_is_told_in_a_line(data, subtests):
+def test_what_is_wrong_in_a_study_is_reported_in_a_line(data, subtests):
     for more, wrong in (
         ({"strokes": {}}, "strokes: unknown entry; did you mean stroke"),
         ({"stroke": {"froce": 1}}, "stroke.froce: unknown entry; did you mean force"),

@@ -120,7 +120,7 @@ def test_older_takes_are_refused_before_anything_else(make_live, tmp_path):
     assert soundfile.info(tmp_path / "record.wav").frames >= 100
 
 
-def test_a_server_told_to_stop_again_leaves_what_it_has_kept(make_live, tmp_path):
+def test_a_server_asked_to_stop_again_leaves_what_it_has_kept(make_live, tmp_path):
     take, capture = tmp_path / "take.wav", tmp_path / "take.jsonl"
     live = make_live(record=take, capture=capture)
     live.wait_frames(4800)

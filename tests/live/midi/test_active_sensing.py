@@ -76,3 +76,9 @@ def test_a_controller_that_falls_silent_is_reported_once_but_not_because_we_slep
     assert controller.posted == []
     controller.sense_for(1000)
     assert controller.posted == ["disconnect", "silent"]
+
+
+def test_clocks_and_system_exclusive_are_not_passed_on(controller):
+    for data in ([0xF8], [0xF9], [0xF0, 0x7E, 9, 1, 0xF7]):
+        controller.port.receive((data, 0.0))
+    assert controller.posted == []

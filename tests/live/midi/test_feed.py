@@ -95,6 +95,26 @@ def test_the_callback_takes_messages_from_shared_memory_at_their_time(shared):
     assert instrument.dropped_events == 0
 
 
+def test_what_is_no_message_is_counted_and_kept_and_plays_nothing(shared):
+    instrument, ring = shared
+    damaged = [[0x90, 200, 1], [0x90, 67, 128], [0xD0, 67, 1], [0x90, 67], [0x43, 67, 1]]
+    for count, data in enumerate(damaged, 1):
+        ring.post(0, MESSAGE, packed(data, 2))
+        instrument.process(np.zeros(64, np.float32))
+        midi = instrument.midi
+        assert midi["malformed"] == count, data
+        assert midi["malformed_last"] == packed(data, 2)
+    assert midi["held"] == 0
+
+
+def test_the_last_that_is_no_message_is_in_the_status(live, until):
+    assert live.server.status()["midi_malformed_last"] == ""
+    ring = SharedRing(live.server.output.memory.buffer, ring_place(MIDI_INPUTS, 0))
+    assert ring.post(0, MESSAGE, packed([0xD0, 0x4A, 0x11], 0))
+    until(lambda: live.server.status()["midi_malformed"] == 1, "it to be counted")
+    assert live.server.status()["midi_malformed_last"] == "d0 4a 11"
+
+
 def test_threads_of_several_inputs_lose_nothing(shared):
     instrument, ring = shared
     made = MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)

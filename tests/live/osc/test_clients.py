@@ -92,7 +92,7 @@ def test_many_who_set_something_at_once_are_all_answered(clients, play):
     assert {len(peer.packets) for peer in peers} == {1}
 
 
-def test_all_are_told_in_turn_where_there_is_more_to_tell_than_goes(clients, values, play):
+def test_all_hear_in_turn_where_there_is_more_to_say_than_goes(clients, values, play):
     peers = [FakePeer(port) for port in range(40)]
     values.now = {f"/{number}": 0.0 for number in range(limits.CHANGES_AT_ONCE // 10)}
     for peer in peers:
@@ -205,7 +205,7 @@ def test_only_so_many_are_remembered_and_subscribers_not_forgotten_for_them(
 # ---------------------------------------------------------------- errors
 
 
-def test_errors_are_told_with_their_reason_and_rarely_to_who_makes_many(clients, play, peer):
+def test_errors_are_reported_with_their_reason_and_rarely_to_who_makes_many(clients, play, peer):
     patient = FakePeer(2)
     play(10_000, lambda: clients.send_error(peer, "/x", "no"))
     assert 100 <= len(peer.packets) <= 125

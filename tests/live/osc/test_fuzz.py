@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import os
 import random
-import struct
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -60,24 +59,6 @@ def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(live, until, ki
     listener.sync()
     live.settle()
     assert live.player.pitch == pytest.approx(67.0, abs=0.5)
-
-
-def test_a_stream_of_anything_else_is_survived(shared_server):
-    good = shared_server.client()
-    for said in [
-        b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n",
-        *(bytes([byte]) * 100_000 for byte in (0xFF, 0x00, 0xC0, 0xDB)),
-        struct.pack(">I", 2**31) + b"x" * 1000,
-        struct.pack(">I", 2**20) + b"x" * 1000,
-        b"\xc0/yehu/note",
-    ]:
-        bad = shared_server.stream()
-        with contextlib.suppress(OSError):
-            bad.socket.sendall(said)
-            bad.socket.shutdown(1)
-        good.sync()
-        assert bad.has_ended(), said[:20]
-    assert shared_server.is_well()
 
 
 # ---------------------------------------------------------------- beside a player

@@ -1,10 +1,9 @@
-"""OSC from and to other programs: liblo, Pure Data, python-osc."""
+"""OSC from and to other programs: liblo, python-osc."""
 
 from __future__ import annotations
 
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
 from pythonosc.osc_tcp_server import MODE_1_0, MODE_1_1
@@ -13,9 +12,7 @@ from pythonosc.udp_client import SimpleUDPClient
 
 LONGEST_S = 30.0
 
-PD = shutil.which("pd") or shutil.which("puredata")
 needs_liblo = pytest.mark.skipif(not shutil.which("oscsend"), reason="liblo's oscsend is not here")
-needs_pd = pytest.mark.skipif(not PD, reason="Pure Data is not here")
 
 
 # ---------------------------------------------------------------- liblo
@@ -45,81 +42,6 @@ def test_liblo_sets_a_parameter_with_any_type_of_a_number_and_no_other(shared_se
         until(lambda n=refused + 1: counts.errors + counts.malformed == n, f"{words} refused")
         assert player.values() == before
     assert shared_server.is_well()
-
-
-# ---------------------------------------------------------------- Pure Data
-
-
-def patch_of(*lines: str) -> str:
-    return "\n".join(("#N canvas 0 0 450 300 10;", *lines, ""))
-
-
-def pd(tmp_path: Path, patch: str) -> str:
-    """Run a patch until it quits; return what it prints."""
-    assert PD is not None
-    file = tmp_path / "patch.pd"
-    file.write_text(patch)
-    ended = subprocess.run(
-        [PD, "-nogui", "-noaudio", "-nomidi", "-stderr", "-noprefs", "-open", str(file)],
-        capture_output=True,
-        text=True,
-        timeout=LONGEST_S,
-        check=False,
-        stdin=subprocess.DEVNULL,
-    )
-    return ended.stdout + ended.stderr
-
-
-def speaking(port: int, address: str, arguments: str, ends_after_ms: int = 10_000) -> str:
-    """A patch that connects, sends a message, prints what comes back, and then quits."""
-    words = " ".join(address.strip("/").split("/"))
-    return patch_of(
-        "#X obj 10 10 loadbang;",  # 0
-        f"#X msg 10 40 connect 127.0.0.1 {port};",  # 1
-        "#X obj 150 40 delay 200;",  # 2
-        f"#X msg 150 70 {arguments};",  # 3
-        f"#X obj 150 100 oscformat {words};",  # 4
-        "#X obj 150 130 list prepend send;",  # 5
-        "#X obj 150 160 list trim;",  # 6
-        "#X obj 10 200 netsend -u -b;",  # 7
-        "#X obj 10 230 oscparse;",  # 8
-        "#X obj 10 260 print heard;",  # 9
-        f"#X obj 300 40 delay {ends_after_ms};",  # 10
-        "#X msg 300 70 \\; pd quit;",  # 11
-        "#X obj 150 230 t b;",  # 12
-        "#X obj 150 260 delay 200;",  # 13
-        "#X connect 0 0 1 0;",
-        "#X connect 0 0 2 0;",
-        "#X connect 0 0 10 0;",
-        "#X connect 1 0 7 0;",
-        "#X connect 2 0 3 0;",
-        "#X connect 3 0 4 0;",
-        "#X connect 4 0 5 0;",
-        "#X connect 5 0 6 0;",
-        "#X connect 6 0 7 0;",
-        "#X connect 7 1 8 0;",
-        "#X connect 8 0 9 0;",
-        "#X connect 10 0 11 0;",
-        "#X connect 8 0 12 0;",
-        "#X connect 12 0 13 0;",
-        "#X connect 13 0 11 0;",
-    )
-
-
-@needs_pd
-def test_pure_data_plays_a_note_sets_a_value_and_hears_what_it_asks_for(live, tmp_path):
-    port = live.ports.port
-    pd(tmp_path, speaking(port, "/yehu/note", "67 90", 500))
-    assert live.handler.counts.messages == 1
-    live.settle()
-    assert live.player.pitch == pytest.approx(67.0, abs=0.5)
-    printed = pd(tmp_path, speaking(port, "/yehu/bow/force", "0.75"))
-    assert live.player.value("/bow/force") == 0.75
-    assert "heard: list yehu bow force 0.75" in printed or "heard: yehu bow force 0.75" in printed
-    printed = pd(tmp_path, speaking(port, "/yehu/subscribe", "10"))
-    for line in ("yehu subscribed 10", "yehu bow force 0.75", "yehu room size 5"):
-        assert line in printed
-    assert live.is_well()
 
 
 # ---------------------------------------------------------------- python-osc

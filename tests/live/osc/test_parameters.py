@@ -95,29 +95,6 @@ def test_parameters_are_listed_with_all_that_a_client_needs(shared_server):
 # ---------------------------------------------------------------- asking for values
 
 
-@pytest.mark.parametrize("played", [False, True], ids=["in silence", "while a note sounds"])
-def test_a_value_that_was_set_is_answered_before_and_after_the_audio_side_has_it(
-    still, played, everything
-):
-    # Half of them each, by default.
-    for param in TABLE if everything else TABLE[played::2]:
-        still.send("/reset")
-        if played:
-            still.send("/note", 72.0, 90.0)
-        still.pass_time(0.02)
-        value = f32(param.lo + (param.hi - param.lo) / 3.0)
-        still.send(param.address, value)
-        assert still.player.value(param.address) == value
-        assert values(still.ask("/get", param.address)) == {"/yehu" + param.address: value}
-        for _ in range(30):  # ms; the audio side takes it up meanwhile
-            if param.address == "/pluck/force" and still.frames(param.address):
-                break  # the string slips off soon
-            assert still.player.value(param.address) == value
-            still.pass_time(0.001)
-        if param.place is Place.ENGINE and param.address != "/pluck/force":
-            assert still.target(param.address) == value
-
-
 @pytest.mark.parametrize("address", ["/bow/force", "/playing/pressure"])
 def test_a_get_after_a_set_answers_the_value_set_while_python_is_busy(shared_server, busy, address):
     client = shared_server.client()
@@ -131,16 +108,6 @@ def test_a_get_after_a_set_answers_the_value_set_while_python_is_busy(shared_ser
             # The value set before may be echoed, first or, on a busy machine, last.
             assert ("/yehu" + address, [value]) in sent_back
     assert shared_server.is_well()
-
-
-def test_what_the_hands_do_with_a_parameter_that_was_set_is_answered_once_they_do_it(still):
-    still.send("/bow/speed", 0.5)
-    still.pass_time(0.02)
-    still.send("/note", 74.0, 80.0)
-    assert still.player.value("/bow/speed") == 0.5
-    still.pass_time(0.02)
-    now = still.player.value("/bow/speed")
-    assert now == still.target("/bow/speed") == pytest.approx(0.2, rel=1e-3)
 
 
 def test_values_are_asked_for_by_pattern(still):

@@ -137,7 +137,9 @@ def test_presets_are_listed_and_a_broken_one_is_sent(still, own):
     assert reason.startswith("bad:1: version: 9 is newer")
 
 
-def test_unknown_addresses_of_a_file_are_told_and_the_rest_is_set_but_for_a_wrong_value(still, own):
+def test_unknown_addresses_of_a_file_are_reported_and_the_rest_is_set_but_for_a_wrong_value(
+    still, own
+):
     file = own / "mine.toml"
     file.write_text(HEAD + '[values]\n"/a/b" = 1\n"/playing/vibrato" = 5\n')
     answer = by_address(still.ask("/preset/load", "mine"))

@@ -13,7 +13,7 @@ from yehu_server.live.osc.status import STATUS
 from yehu_server.params.table import TABLE, find
 
 
-def test_a_subscriber_may_be_told_of_zero_to_one(still):
+def test_a_subscriber_may_hear_of_zero_to_one(still):
     sent = values(still.ask("/subscribe/unit", 60.0))
     speed = still.player.value("/playing/speed")
     assert sent["/yehu/playing/speed/unit"] == f32(find("/playing/speed").to_unit(speed))

@@ -1,4 +1,4 @@
-"""Surfaces on a real server: their pads, and the shipped patch in a real Pure Data."""
+"""The shipped patch on a real server, in a real Pure Data."""
 
 from __future__ import annotations
 
@@ -13,13 +13,6 @@ import pytest
 
 from yehu_server.params.table import TABLE
 from yehu_server.surfaces import puredata
-from yehu_server.surfaces.common_layout import (
-    BOW_FORCE,
-    BOW_SPEED,
-    STRING_PITCH,
-    STRING_PRESS,
-    Axis,
-)
 
 PD = shutil.which("pd") or shutil.which("puredata")
 
@@ -118,21 +111,3 @@ def test_a_slider_follows_the_server_says_nothing_back_and_shows_what_it_has_mov
     until(lambda: live.player.value("/playing/speed") == pytest.approx(0.3), "the move")
     client.send("/playing/vibrato", 77.0)
     until(lambda: "watched: set 77" in patch.printed, "the change, sent when the slider rests")
-
-
-def along(axis: Axis, unit: float) -> float:
-    return axis.lo + (axis.hi - axis.lo) * unit
-
-
-def test_one_hand_on_the_string_and_one_on_the_bow_sound_until_the_bow_is_lifted(live, until):
-    client = live.client()
-    client.send("/bow", BOW_SPEED.start, BOW_FORCE.start)  # at rest
-    live.settle()
-    assert live.level() < 1e-6
-    client.send("/pitch", along(STRING_PITCH, 0.15))
-    client.send("/press", STRING_PRESS.start)
-    client.send("/bow", along(BOW_SPEED, 0.7), along(BOW_FORCE, 0.25))
-    until(lambda: live.level() > 0.01, "sound")
-    client.send("/bow", along(BOW_SPEED, 0.5), along(BOW_FORCE, 0.0))
-    until(lambda: live.target("/bow/speed") == 0.0, "the bow lifted")
-    until(lambda: live.level() < 1e-3, "silence")

@@ -135,6 +135,17 @@ def test_one_may_hold_as_much_as_it_leaves_free_and_there_is_always_room_for_the
     assert shares._free == limits.WAITING
 
 
+def test_one_may_hold_exactly_what_it_leaves_free():
+    for most, taken in ((8, [4]), (7, [3]), (12, [4, 2])):
+        shares = Shares(most)
+        for size in taken:
+            assert shares.take(ONE, size)
+        assert not shares.take(ONE, 1)
+        assert shares.held(ONE) == sum(taken)
+        assert shares.take(TWO, 1)
+    assert not Shares(7).take(ONE, 4)
+
+
 def test_a_note_finds_room_beside_two_hundred_that_send_as_much_as_they_can():
     shares, crowd = Shares(limits.WAITING), [FakePeer(port) for port in range(200)]
     while sum([shares.take(peer, 16_000) for peer in crowd]):

@@ -46,7 +46,8 @@ def test_another_machine_needs_the_pin_and_has_to_wait_if_it_guesses(monkeypatch
     wrong = ("", "123457", "\u0661" * 6)
     assert [admission.role_of(ELSEWHERE, pin) for pin in wrong] == [None] * 3
     assert admission.role_of(ELSEWHERE, "123456") == "play"
-    for _ in range(limits.PINS_AT_ONCE):
+    for _ in range(limits.PINS_AT_ONCE - 2):
+        assert admission.role_of(ELSEWHERE, "123456") == "play"
         assert admission.role_of(ELSEWHERE, "000000") is None
     assert admission.role_of(ELSEWHERE, "123456") is None
     assert admission.role_of("192.0.2.8", "123456") == "play"

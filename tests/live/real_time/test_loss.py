@@ -12,25 +12,15 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import forks
 import numpy as np
 import pytest
 import soundfile
 
 from yehu_server.cli import main
-from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.engine.instrument import Instrument
-from yehu_server.live.audio.output import OutputOptions, SharedMemory
+from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
-from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.part_state import Key
-from yehu_server.playing.player import Player
-from yehu_server.rendering.replay import blocks
-from yehu_server.scores.capture import read_capture
-from yehu_server.scores.capture_header import session_start_of
-from yehu_server.scores.capture_writer import CaptureWriter
 from yehu_server.util.processes import Child
 
 DEVICE = "system, JACK Audio Connection Kit"
@@ -247,68 +237,6 @@ def test_a_key_that_was_pressed_while_the_audio_process_died_can_be_let_go(stopp
     getattr(it.player, end)(*words, frame=it.player.frame_of())
     until(lambda: it.keys == (0, 0), "the key to be let go", 5.0)
     until(lambda: it.player.pitch is None, "its end", 5.0)
-
-
-PLAYS_ON = """
-import mmap, sys
-import numpy as np
-from yehu_server.core.engine import native
-from yehu_server.core.engine.warming import warm_up
-from yehu_server.core.engine.rig import memory_bytes
-memory = mmap.mmap(int(sys.argv[1]), memory_bytes(1))
-rig = np.frombuffer(memory, np.uint8).ctypes.data
-out = np.zeros((8192, 2), np.float32)
-warm_up()
-print("plays", flush=True)
-while True:
-    native.callback.call(None, out.ctypes.data, len(out), None, 0, rig)
-"""
-
-
-def play(instrument: Instrument, commands: Player) -> None:
-    """Play two notes, each varied in its own way; the second is held until the sound dies."""
-    frame = instrument.frame + 100
-    commands.note_on(Key(0, 67), {"/playing/pressure": 0.5}, frame=frame)
-    commands.write("/playing/bend", 0.3, frame=frame + 500)
-    commands.note_on(Key(0, 74), frame=frame + 2000)
-    commands.note_off(Key(0, 67), frame=frame + 3000)
-
-
-def test_what_was_recorded_over_a_kill_in_the_middle_of_a_block_is_replayed(tmp_path):
-    memory = SharedMemory()
-    playing = PlayingOptions(seed=3)
-    calibration = calibration_for(48000.0)
-    stage = Ensemble([playing.spec(48000.0, calibration)], memory=memory.buffer)
-    live = stage.first
-    commands = playing.player(live)
-    live.report_commands()
-    capture = CaptureWriter(
-        tmp_path / "take.jsonl", beginning=session_start_of([live], has_room=True)
-    )
-    recorded = np.zeros((0, 2), np.float32)
-    for _ in range(3):
-        play(live, commands)
-        audio = forks.start(memory.descriptor, code=PLAYS_ON, pass_fds=[memory.descriptor])
-        assert audio.stdout.readline() == "plays\n"
-        time.sleep(0.1)
-        audio.kill()
-        audio.communicate()
-        stage.recover()
-        capture.commands(live.applied_commands())
-        begin, samples = stage.taped(len(recorded))
-        assert begin == len(recorded)
-        recorded = np.concatenate([recorded, samples])
-    play(live, commands)
-    stage.process(np.zeros((9600, 2), np.float32))
-    capture.commands(live.applied_commands())
-    for since, frame in stage.gaps:
-        capture.note("rest", frame, since=since)
-    capture.close(live.frame)
-    recorded = np.concatenate([recorded, stage.taped(len(recorded))[1]])
-    assert peak(recorded) > SOUNDS
-    captured = read_capture(tmp_path / "take.jsonl")
-    again = list(blocks(captured, captured.beginning.ensemble()))
-    np.testing.assert_array_equal(np.concatenate(again), recorded)
 
 
 def open_files() -> set[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import random
 import subprocess
 import sys
 import time
@@ -14,12 +13,10 @@ import pytest
 import rtmidi
 from moves import Moves
 
-from yehu_server.core.engine.mailbox import MIDI_INPUTS
-from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.midi import input_process
-from yehu_server.live.midi.feed import MidiFeed, SharedRing
+from yehu_server.live.midi.feed import MidiFeed
 from yehu_server.live.midi.input_process import Inputs
 from yehu_server.live.midi.ports import MidiOptions, MidiPorts
 from yehu_server.live.midi.routes import Router, StableNames, is_wanted
@@ -114,9 +111,6 @@ class Witness:
         """Frame, target and ramp of the last move of each parameter."""
         time.sleep(0.05)
         return {move.address: (move.frame, move.target, move.ramp) for move in self._moves.seen()}
-
-    def malformed(self) -> int:
-        return int(self.server.status()["midi_malformed"])
 
     def comes_to(self, pitch: float | None) -> None:
         """Wait until what is posted is played."""
@@ -259,70 +253,6 @@ def test_a_port_that_vanishes_takes_its_notes_with_it(keys):
     heard.hears("MIDI: keyboard:out is connected")
     heard.plays(67.0, keyboard, "send keyboard 90 43 60")
     heard.plays(None, keyboard, "send keyboard 80 43 60")
-
-
-def test_a_program_that_dies_takes_its_notes_with_it_and_no_other_ones(keys, jackd):
-    heard, keyboard = keys
-    other = Program(SENDER, jackd.environment)
-    try:
-        other.send("open pads out")
-        heard.hears("MIDI: pads:out is connected")
-        heard.plays(69.0, keyboard, "send keyboard 90 45 60")
-        heard.plays(72.0, other, "send pads 90 48 60")
-    finally:
-        other.kill()
-    heard.hears("MIDI: pads:out is gone")
-    heard.comes_to(69.0)
-    assert heard.server.midi.connected == ["keyboard:out"]
-
-
-# ---------------------------------------------------------------- bytes of any kind
-
-
-def noise(chance: random.Random) -> list[int]:
-    """Bytes of a message, whole or damaged, but no system exclusive: see below."""
-    status = chance.choice([*range(0x80, 0xF0), *range(0xF1, 0x100), 0x90, 0x90, 0xB0, 0xE0])
-    return [status, *(chance.randrange(0x80) for _ in range(chance.randrange(3)))]
-
-
-def hear_noise(heard: Witness, until: Callable, data: Callable[[], list[int]]) -> None:
-    """Send noise from two ports, close them, and wait until all of it is taken."""
-    chance = random.Random(9)
-    names = ["one", "two"]
-    ring = SharedRing(heard.server.output.memory.buffer, ring_place(MIDI_INPUTS, 0))
-    feed = MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)
-
-    def all_is_taken() -> bool:
-        return ring._drained.value == ring._posted.value
-
-    for name in names:
-        feed.open(name)
-    for number in range(5000):
-        port = chance.choice(names)
-        if sent := data():
-            feed.receive(port, sent, time.monotonic_ns())
-        if number % 1000 == 999:
-            feed.end_port_notes(port, time.monotonic_ns(), is_gone=False)
-            until(all_is_taken, "messages to be taken", SOON_S)  # so many at a time
-    for name in names:
-        feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
-    until(all_is_taken, "the end of both ports to be taken", SOON_S)
-
-
-def test_whatever_bytes_are_heard_are_counted_where_they_are_no_message(listening, until):
-    heard = listening
-    before = heard.malformed()
-    chance = random.Random(8)
-    hear_noise(heard, until, lambda: [chance.randrange(256)] * chance.randrange(4))
-    hear_noise(heard, until, lambda: noise(chance))
-
-    def is_last() -> bool:  # unless what an earlier test sent by JACK comes after it
-        hear_noise(heard, until, lambda: [0xD0, 0x4A, 0x11])
-        return bool(heard.server.status()["midi_malformed_last"].startswith("d0 4a 11"))
-
-    until(is_last, "the last one to be reported", SOON_S)
-    heard.comes_to(None)
-    assert heard.malformed() >= before + 5000
 
 
 # ---------------------------------------------------------------- names

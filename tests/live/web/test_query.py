@@ -92,3 +92,13 @@ def test_only_a_server_loads_what_the_web_needs(module):
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert module in run.stdout.split()
     assert not {"aiohttp", "zeroconf", "prometheus_client"} & set(run.stdout.split())
+
+
+def test_of_a_part_what_it_has_may_be_listened_to_and_nothing_of_the_servers():
+    known = readable(2)
+    plain = {address for address in known if not address.startswith("/part/")}
+    of_part = {address[7:] for address in known if address.startswith("/part/2/")}
+    assert of_part - plain == {"/status/keys"}
+    assert {"/status/load", "/room/size"} <= plain - of_part
+    assert {"/status/note", "/playing/volume"} <= of_part
+    assert not any(address.startswith("/part/3/") for address in known)

@@ -193,12 +193,6 @@ def test_nonsense_is_refused_is_no_defect_and_the_server_goes_on(shared_web, por
 # ---------------------------------------------------------------- begin and end
 
 
-def test_the_server_can_do_without(make_live):
-    live = make_live(http=None)
-    assert live.server.web is None
-    assert live.server.status()["http_requests"] == 0
-
-
 def test_a_defect_is_counted_and_ends_one_request_only(shared_web, port, monkeypatch):
     before = shared_web.server.status()["http_failures"]
     with monkeypatch.context() as patch:

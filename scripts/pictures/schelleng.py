@@ -29,8 +29,8 @@ from yehu_server.core.player.bowing import (
     AT_LIGHT,
     DISTANCE_FACTOR,
     FIRM,
-    LEAST_PRESS,
     LIGHT,
+    MIN_PRESS,
     TOP_SPEED,
     bowing_value,
     share,
@@ -80,7 +80,7 @@ class Player:
 
 def bowed(player: Player, vary: dict[str, Any]) -> Result:
     """Bow the note in all combinations."""
-    press = max(find("/playing/press").default, player.bowing_value(LEAST_PRESS))
+    press = max(find("/playing/press").default, player.bowing_value(MIN_PRESS))
     stroke = {"string": player.string + 1, "note": player.note, "press": press}
     along = next(name for name in ("position", "speed") if isinstance(vary.get(name), dict))
     return sweep(

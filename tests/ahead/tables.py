@@ -17,7 +17,7 @@ from live.page import streams
 from yehu_server.ahead.table_checks import CHECKS
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
-from yehu_server.core.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, PROGRAMS, SLOTS, TABLES
+from yehu_server.core.midi.tables import KEYS, MAX_BINDS, MAX_POINTS, PROGRAMS, SLOTS, TABLES
 from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
@@ -25,7 +25,7 @@ from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
 TUNINGS = (EQUAL, read_tuning(Path("chaozhou-seven-equal")))
 WILD = (math.nan, math.inf, -math.inf, 1e308, -1e308, 1e-310, -1.0, 0.5, 1e9)
-ENDS = (PARAMETER_COUNT, KEYS, MOST_BINDS, MOST_POINTS, 1 << 16)  # of arrays, and of channels
+ENDS = (PARAMETER_COUNT, KEYS, MAX_BINDS, MAX_POINTS, 1 << 16)  # of arrays, and of channels
 USED = [name for name in TABLES.names or () if name not in ("x", "y")]
 MESSAGES = 12
 

@@ -19,8 +19,8 @@ from yehu_server.core.player.bowing import (
     FIRM,
     FIRST,
     FLAUTANDO,
-    LEAST_PRESS,
     LIGHT,
+    MIN_PRESS,
     PLACES,
     TOP_SPEED,
     bowing_value,
@@ -111,7 +111,7 @@ def listener() -> Watched:
     bowing = default_bowing_table()
     bowing[0, :, 69 - FIRST, TOP_SPEED] = SLOWEST
     bowing[0, :, 66 - FIRST, DISTANCE_FACTOR] = FARTHEST
-    bowing[0, :, 66 - FIRST, LEAST_PRESS] = HARDEST
+    bowing[0, :, 66 - FIRST, MIN_PRESS] = HARDEST
     return Watched(calibration=ideal(), bowing=bowing)
 
 

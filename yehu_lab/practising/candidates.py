@@ -12,7 +12,7 @@ from yehu_server.core.player.bowing import (
     AT_LIGHT,
     DISTANCE_FACTOR,
     FIRST,
-    LEAST_PRESS,
+    MIN_PRESS,
     PLACES,
     TOP_SPEED,
     default_bowing_table,
@@ -49,7 +49,7 @@ def slower(best: Array, _string: int, _place: int) -> Iterator[Array]:
 
 def pressed(best: Array, _string: int, _place: int) -> Iterator[Array]:
     """Other fingers."""
-    return (changed(best, LEAST_PRESS, press) for press in PRESSES)
+    return (changed(best, MIN_PRESS, press) for press in PRESSES)
 
 
 def firmer(best: Array, _string: int, _place: int) -> Iterator[Array]:

@@ -44,7 +44,7 @@ from yehu_server.core.player.parameter_indices import (
     PARAMETER_COUNT,
     SLOT_OF,
 )
-from yehu_server.core.player.record import MOST_HELD, PLAYER
+from yehu_server.core.player.record import MAX_HELD, PLAYER
 from yehu_server.core.stage.delay_lines import LINES
 from yehu_server.core.stage.record import STAGE, TAPE_AT
 
@@ -263,7 +263,7 @@ def reset(rig: Any) -> None:
     if put(rig, m.rate, stage.channels, 1) == 0:
         return
     m.held, m.sounding, m.listed = 0, NONE, 0
-    for n in range(MOST_HELD):
+    for n in range(MAX_HELD):
         m.is_listed[n] = 0
     if m.has_last != 0:  # values as they are for no note, without its velocity
         find_values(m, t, m.last_channel, NO_KEY)

@@ -20,8 +20,8 @@ from yehu_server.core.midi.tables import (
     CONTROL,
     EXPONENTIAL,
     KEYS,
-    MOST_BINDS,
-    MOST_POINTS,
+    MAX_BINDS,
+    MAX_POINTS,
     NOTE,
     NRPN,
     PAIR,
@@ -30,7 +30,7 @@ from yehu_server.core.midi.tables import (
     TABLES,
     Tables,
 )
-from yehu_server.core.player.parameter_indices import HIGHEST, LOWEST, PARAMETER_COUNT
+from yehu_server.core.player.parameter_indices import LOWER_BOUNDS, PARAMETER_COUNT, UPPER_BOUNDS
 
 PAIRS, NRPNS = 32, 1 << 14
 MOST = 1e9
@@ -39,15 +39,15 @@ ANY, WHOLE, WHOLE_OR_NONE, ANY_OR_NONE = range(4)  # NaN stands for none
 SWITCHES = ("invert", "soft", "by_range", "for_all", "mpe", "is_equal", "has_programs")
 # What each field may hold: kind, lowest, highest.
 FIELDS = {
-    "binds": (WHOLE, 0, MOST_BINDS),
+    "binds": (WHOLE, 0, MAX_BINDS),
     "source": (WHOLE, 0, MOST),
-    "first": (WHOLE, 0, MOST_BINDS - 1),
+    "first": (WHOLE, 0, MAX_BINDS - 1),
     "target": (WHOLE, 0, PARAMETER_COUNT - 1),
     "lo": (ANY, -MOST, MOST),
     "hi": (ANY, -MOST, MOST),
     "curve": (WHOLE, 0, POINTS),
-    "first_point": (WHOLE, 0, MOST_POINTS),
-    "points": (WHOLE, 0, MOST_POINTS),
+    "first_point": (WHOLE, 0, MAX_POINTS),
+    "points": (WHOLE, 0, MAX_POINTS),
     "smoothing_ms": (ANY, 0, MOST),
     "channels": (WHOLE, 0, (1 << IN_PORT) - 1),
     "input_lo": (ANY, -1e307, 1e307),
@@ -105,11 +105,11 @@ def check_values(t: Tables) -> int:
     """Return whether values are within the ranges of their parameters, once each field is right."""
     for n in range(int(t.starts)):
         index = int(t.start_row[n])
-        if not LOWEST[index] <= t.start_value[n] <= HIGHEST[index]:
+        if not LOWER_BOUNDS[index] <= t.start_value[n] <= UPPER_BOUNDS[index]:
             return 0
     for index in range(PARAMETER_COUNT):
         usual = t.usual[index]
-        if not LOWEST[index] <= usual <= HIGHEST[index] or 0.0 < usual < TINY:
+        if not LOWER_BOUNDS[index] <= usual <= UPPER_BOUNDS[index] or 0.0 < usual < TINY:
             return 0
     return 1
 
@@ -126,7 +126,12 @@ def check_binds(t: Tables) -> int:
             first += 1
         if not (is_change or is_other) or int(t.first[n]) != first:
             return 0
-        if not LOWEST[index] <= min(t.lo[n], t.hi[n]) <= max(t.lo[n], t.hi[n]) <= HIGHEST[index]:
+        if (
+            not LOWER_BOUNDS[index]
+            <= min(t.lo[n], t.hi[n])
+            <= max(t.lo[n], t.hi[n])
+            <= UPPER_BOUNDS[index]
+        ):
             return 0
     return 1
 
@@ -141,7 +146,7 @@ def check_curves(t: Tables) -> int:
         if curve != POINTS:
             continue
         begin, end = int(t.first_point[n]), int(t.first_point[n] + t.points[n])
-        if end > MOST_POINTS or end - begin < 2:
+        if end > MAX_POINTS or end - begin < 2:
             return 0
         if t.x[begin] != 0.0 or t.x[end - 1] != 1.0:
             return 0

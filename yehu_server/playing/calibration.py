@@ -28,8 +28,8 @@ from yehu_server.core.player.bowing import (
     AT_LIGHT,
     DISTANCE_FACTOR,
     FIRM,
-    LEAST_PRESS,
     LIGHT,
+    MIN_PRESS,
     PLACES,
     TOP_SPEED,
     at_pitch,
@@ -178,7 +178,7 @@ def _steady(setup: _Setup, string: int, pitch: float, speed: float, x_f: float |
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
         instrument.write(
-            "/finger/1/press", max(PRESS, setup.bowing_value(string, pitch, LEAST_PRESS))
+            "/finger/1/press", max(PRESS, setup.bowing_value(string, pitch, MIN_PRESS))
         )
     columns = (AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, TOP_SPEED)
     flautando, light, firm, farther, fastest = (

@@ -22,11 +22,11 @@ from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.gestures import BEARS_SLIDE, STEEP
 from yehu_server.core.player.note_range import NoteRange
 from yehu_server.core.player.phrasing import (
-    LEAST_LEAP,
     LONG_S,
-    SHORTEST_SLIDE_MS,
+    MAX_LEAP,
+    MIN_LEAP,
+    MIN_SLIDE_MS,
     SLIDE_MS,
-    WIDEST_LEAP,
 )
 from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
@@ -72,7 +72,7 @@ class _State(NamedTuple):
 def with_slides(score: Score, amount: float, playing: PlayingOptions) -> Score:
     """Return a score with slides over its leaps, as far as phrasing (0 to 1) says."""
     within = range_of(playing.quantities)
-    slide_s = 1e-3 * (SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * amount)
+    slide_s = 1e-3 * (MIN_SLIDE_MS + (SLIDE_MS - MIN_SLIDE_MS) * amount)
     slides = list(_slides(score, amount, playing, within))
     on_strings = {slide.note.begins for slide in slides if slide.string}
     before: dict[int, list[ScoreEvent]] = defaultdict(list)  # by the number of the event after
@@ -122,7 +122,7 @@ def _slides(
             continue
         state, then = states[note.begins], states[after.begins]
         low, high = sorted(_pitch(each, playing, within) for each in (note, after))
-        is_leap = LEAST_LEAP < high - low < WIDEST_LEAP  # not where either is NaN
+        is_leap = MIN_LEAP < high - low < MAX_LEAP  # not where either is NaN
         if not is_leap or not _is_free(state) or not _is_free(then) or state.bends != then.bends:
             continue
         string = _string(low, high, (state, then), within)

@@ -6,7 +6,7 @@ from held_notes import HOP, RATE, Playing
 
 from yehu_server.core.controls.slots import SHARE
 from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
-from yehu_server.core.player.stroke import END, SLOWEST
+from yehu_server.core.player.stroke import END, MIN_SPEED_FACTOR
 
 LENGTH, SPEED = 0.7, 0.2
 
@@ -66,7 +66,7 @@ def test_a_note_that_is_known_to_be_long_is_bowed_more_slowly():
     playing.on(74)
     speed, _ = drawn(playing, 5.0)
     assert len(turns(speed)) == 0
-    assert SLOWEST * SPEED <= speed.max() < 0.7 * SPEED
+    assert MIN_SPEED_FACTOR * SPEED <= speed.max() < 0.7 * SPEED
 
 
 def test_a_note_that_needs_more_hair_than_is_left_goes_the_other_way():

@@ -13,7 +13,7 @@ from yehu_server.core.controls.slots import (
     GAIN,
     LEVEL,
     LOSS,
-    LOWEST,
+    LOWER_BOUNDS,
     SILENCE,
     SLOTS,
     TUNING,
@@ -65,7 +65,7 @@ def take(c: Any, slot: int, target: float, ramp: int) -> None:
         return
     if slot < 0 or slot >= SLOTS or math.isnan(target):
         return
-    target = min(max(target, LOWEST[slot]), c.highest[slot])
+    target = min(max(target, LOWER_BOUNDS[slot]), c.highest[slot])
     c.target[slot] = target
     if ramp <= 0:
         c.value[slot] = target

@@ -12,11 +12,11 @@ from yehu_server.core.controls.ramps import DECIBELS, pole_of_time
 from yehu_server.core.controls.slots import (
     FINGER_POSITION,
     FINGER_PRESS,
-    HIGHEST,
     LOSS,
     PLUCK,
     SLOTS,
     TUNING,
+    UPPER_BOUNDS,
 )
 from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS
 from yehu_server.core.physics.quantities import Quantities
@@ -110,7 +110,7 @@ def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, f
     controls["let_go"] = max(1, round(LET_GO_S * rate))
     steady(controls)
     controls["bridge_x"] = quantities.bridge_x
-    controls["highest"] = HIGHEST
+    controls["highest"] = UPPER_BOUNDS
     # Fingers reach as far up longer strings as up those of the yehu, for which the bound is.
     controls["highest"][:, FINGER_POSITION] *= quantities.bridge_x / Quantities().bridge_x
     grip = quantities.bow.mu_S - quantities.bow.mu_C

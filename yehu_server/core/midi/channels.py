@@ -13,11 +13,11 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE
-from yehu_server.core.midi.tables import MOST_BINDS
+from yehu_server.core.midi.tables import MAX_BINDS
 from yehu_server.core.player.parameter_indices import INDEX
 
 LOWER_MASTER, UPPER_MASTER = 0, 15  # in a port
-MOST_MEMBERS = 15
+MAX_MEMBERS = 15
 MEMBER_BEND, MASTER_BEND = 48.0, 2.0  # semitones, until RPN 0 sets another range
 PERCUSSION = 9  # channel 10, counted from 0
 ALL_BUT_PERCUSSION = -1  # of channels that are received
@@ -36,7 +36,7 @@ def is_midi(channel: int) -> bool:
 @compiled_exactly
 def begin_port(m: Any, t: Any, port: int) -> None:
     """Give a port the zones that it starts with: none, or one of all channels."""
-    m.lower[port] = MOST_MEMBERS if t.mpe != 0.0 else 0
+    m.lower[port] = MAX_MEMBERS if t.mpe != 0.0 else 0
     m.upper[port] = 0
 
 
@@ -47,8 +47,8 @@ def configure_zone(m: Any, channel: int, members: int) -> bool:
     Where two zones overlap, the one configured last keeps its channels.
     """
     port, own = channel // IN_PORT, channel % IN_PORT
-    members = min(members, MOST_MEMBERS)
-    room = max(MOST_MEMBERS - 1 - members, 0)  # left for the other zone, between the two masters
+    members = min(members, MAX_MEMBERS)
+    room = max(MAX_MEMBERS - 1 - members, 0)  # left for the other zone, between the two masters
     if own == LOWER_MASTER:
         m.lower[port] = members
         m.upper[port] = min(m.upper[port], room)
@@ -145,7 +145,7 @@ def forget_channel(m: Any, channel: int) -> None:
 def forget_moves(m: Any, channel: int) -> None:
     """Forget all moves on a channel."""
     if m.is_active[channel] != 0:
-        for bind in range(MOST_BINDS):
+        for bind in range(MAX_BINDS):
             m.move_number[channel, bind] = m.taken_number[channel, bind] = 0
         for key in range(m.pressure_number.shape[1]):
             m.pressure_number[channel, key] = 0

@@ -27,7 +27,12 @@ from yehu_server.core.midi.section_players import (
     begin_sequence,
 )
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
-from yehu_server.core.player.parameter_indices import HIGHEST, IS_PLAYER_CONTROLLED, LOWEST, SEED
+from yehu_server.core.player.parameter_indices import (
+    IS_PLAYER_CONTROLLED,
+    LOWER_BOUNDS,
+    SEED,
+    UPPER_BOUNDS,
+)
 
 # -- parameters -----------------------------------------------------------------------------------
 
@@ -35,7 +40,7 @@ from yehu_server.core.player.parameter_indices import HIGHEST, IS_PLAYER_CONTROL
 @compiled_exactly
 def in_range(index: int, value: float) -> float:
     """The value nearest to one that a parameter can have."""
-    return float(min(max(value, LOWEST[index]), HIGHEST[index]))
+    return float(min(max(value, LOWER_BOUNDS[index]), UPPER_BOUNDS[index]))
 
 
 @compiled_exactly
@@ -106,7 +111,7 @@ def express(m: Any, frame: int, index: int, value: float) -> None:
 @compiled_exactly
 def release_held(m: Any) -> None:
     """Hold no parameter any more."""
-    for index in range(len(LOWEST)):
+    for index in range(len(LOWER_BOUNDS)):
         m.is_held[index] = 0
 
 

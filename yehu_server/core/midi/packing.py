@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 BYTE, LENGTH_AT, PORT_AT = 8, 24, 32  # bits
-MOST_BYTES = 3
+MAX_BYTES = 3
 
 
 def packed(message: Sequence[int], port: int = 0) -> int:
@@ -16,7 +16,7 @@ def packed(message: Sequence[int], port: int = 0) -> int:
 
     Longer ones are packed as if they had no byte, and change nothing.
     """
-    if len(message) > MOST_BYTES:
+    if len(message) > MAX_BYTES:
         return port << PORT_AT
     index = len(message) << LENGTH_AT | port << PORT_AT
     for place, byte in enumerate(message):

@@ -8,17 +8,17 @@ from typing import Annotated, Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.midi.tables import KEYS, MOST_BINDS
+from yehu_server.core.midi.tables import KEYS, MAX_BINDS
 from yehu_server.core.player.parameter_indices import INDEX, PARAMETER_COUNT
-from yehu_server.core.player.record import MOST_HELD
+from yehu_server.core.player.record import MAX_HELD
 from yehu_server.params.table import TABLE
 
 PORTS, IN_PORT = 16, 16
 CHANNELS = PORTS * IN_PORT
 MAX_PLAYERS = 16  # players of a section, at most
-MOST_CHORD = 32  # notes that a section divides
+MAX_CHORD = 32  # notes that a section divides
 ONSETS = 64  # that a section remembers
-MOST_COMMANDS = 8192  # that one event comes to
+MAX_COMMANDS = 8192  # that one event comes to
 NONE = -1
 SECTION = INDEX["/playing/section"]
 
@@ -30,13 +30,13 @@ MIDI = np.dtype(
         ("is_held", np.int64, PARAMETER_COUNT),
         # Held keys, in the order pressed, and the one that sounds: its number, or NONE.
         ("held", np.int64),
-        ("held_channel", np.int64, MOST_HELD),
-        ("held_key", np.float64, MOST_HELD),
-        ("held_velocity", np.float64, MOST_HELD),
-        ("held_strike_number", np.int64, MOST_HELD),  # of the move that its velocity is; 0: none
-        ("held_again", np.int64, MOST_HELD),  # frame at which it was struck while held, or NONE
-        ("held_by", np.int64, MOST_HELD),  # channel of the pedal that holds it, or NONE
-        ("held_since", np.int64, MOST_HELD),  # order in which pedals took keys
+        ("held_channel", np.int64, MAX_HELD),
+        ("held_key", np.float64, MAX_HELD),
+        ("held_velocity", np.float64, MAX_HELD),
+        ("held_strike_number", np.int64, MAX_HELD),  # of the move that its velocity is; 0: none
+        ("held_again", np.int64, MAX_HELD),  # frame at which it was struck while held, or NONE
+        ("held_by", np.int64, MAX_HELD),  # channel of the pedal that holds it, or NONE
+        ("held_since", np.int64, MAX_HELD),  # order in which pedals took keys
         ("sounding", np.int64),
         ("pedalled", np.int64),  # number of keys that pedals took
         # The key that sounds or sounded last.
@@ -47,16 +47,16 @@ MIDI = np.dtype(
         ("last_strike_number", np.int64),
         # Keys that end together: their numbers among those held.
         ("listed", np.int64),
-        ("list", np.int64, MOST_HELD),
-        ("is_listed", np.int64, MOST_HELD),
+        ("list", np.int64, MAX_HELD),
+        ("is_listed", np.int64, MAX_HELD),
         # Moves are numbered in their order, from 1, since the later of two counts; 0: none. Their
         # positions are 0 to 1. By channel and first bind of the source; `taken` are those that
         # soft binds acted on. A key that is struck moves velocity, a write sets a target.
         ("moves", np.int64),
-        ("move_number", np.int64, (CHANNELS, MOST_BINDS)),
-        ("position", np.float64, (CHANNELS, MOST_BINDS)),
-        ("taken_number", np.int64, (CHANNELS, MOST_BINDS)),
-        ("taken_position", np.float64, (CHANNELS, MOST_BINDS)),
+        ("move_number", np.int64, (CHANNELS, MAX_BINDS)),
+        ("position", np.float64, (CHANNELS, MAX_BINDS)),
+        ("taken_number", np.int64, (CHANNELS, MAX_BINDS)),
+        ("taken_position", np.float64, (CHANNELS, MAX_BINDS)),
         ("pressure_number", np.int64, (CHANNELS, KEYS)),  # aftertouch of each key
         ("pressure", np.float64, (CHANNELS, KEYS)),
         ("strike_number", np.int64, CHANNELS + 1),  # last note of a channel; at last, of all others
@@ -66,9 +66,9 @@ MIDI = np.dtype(
         ("active", np.int64, CHANNELS),
         ("is_active", np.int64, CHANNELS),
         # Named controls, by bind.
-        ("has_fader", np.int64, MOST_BINDS),
-        ("fader", np.float64, MOST_BINDS),
-        ("fader_wrote", np.float64, MOST_BINDS),  # value it last gave its target; NaN: none
+        ("has_fader", np.int64, MAX_BINDS),
+        ("fader", np.float64, MAX_BINDS),
+        ("fader_wrote", np.float64, MAX_BINDS),  # value it last gave its target; NaN: none
         # Targets as set last, or as before their first move: indices in that order; the number of
         # that write.
         ("targets", np.int64),
@@ -107,9 +107,9 @@ MIDI = np.dtype(
         ("playing", np.int64),
         # Each player of a section: its held keys, its note of the last chord, its clock.
         ("holds", np.int64, MAX_PLAYERS),
-        ("holds_channel", np.int64, (MAX_PLAYERS, MOST_HELD)),
-        ("holds_key", np.float64, (MAX_PLAYERS, MOST_HELD)),
-        ("holds_from", np.int64, (MAX_PLAYERS, MOST_HELD)),
+        ("holds_channel", np.int64, (MAX_PLAYERS, MAX_HELD)),
+        ("holds_key", np.float64, (MAX_PLAYERS, MAX_HELD)),
+        ("holds_from", np.int64, (MAX_PLAYERS, MAX_HELD)),
         ("has_note", np.int64, MAX_PLAYERS),
         ("note_channel", np.int64, MAX_PLAYERS),
         ("note_key", np.float64, MAX_PLAYERS),
@@ -118,16 +118,16 @@ MIDI = np.dtype(
         # The last chord: its keys, their pitches, and the values of each.
         ("chord", np.int64),
         ("chord_at", np.int64),
-        ("chord_channel", np.int64, MOST_CHORD),
-        ("chord_key", np.float64, MOST_CHORD),
-        ("chord_pitch", np.float64, MOST_CHORD),
-        ("chord_values", np.int64, MOST_CHORD),
-        ("chord_index", np.int64, (MOST_CHORD, PARAMETER_COUNT)),
-        ("chord_value", np.float64, (MOST_CHORD, PARAMETER_COUNT)),
+        ("chord_channel", np.int64, MAX_CHORD),
+        ("chord_key", np.float64, MAX_CHORD),
+        ("chord_pitch", np.float64, MAX_CHORD),
+        ("chord_values", np.int64, MAX_CHORD),
+        ("chord_index", np.int64, (MAX_CHORD, PARAMETER_COUNT)),
+        ("chord_value", np.float64, (MAX_CHORD, PARAMETER_COUNT)),
         ("is_divided", np.int64),
         ("assigned", np.int64),
         ("assigned_player", np.int64, MAX_PLAYERS),
-        ("order", np.int64, MOST_CHORD),
+        ("order", np.int64, MAX_CHORD),
         # Values for the note that begins next, or sounds again.
         ("values", np.int64),
         ("values_index", np.int64, PARAMETER_COUNT),
@@ -145,17 +145,17 @@ MIDI = np.dtype(
         # Commands that the event comes to.
         ("commands", np.int64),
         ("lost", np.int64),  # of those that there was no room for
-        ("out_frame", np.int64, MOST_COMMANDS),
-        ("out_kind", np.int64, MOST_COMMANDS),
-        ("out_index", np.int64, MOST_COMMANDS),
-        ("out_value", np.float64, MOST_COMMANDS),
-        ("out_other", np.float64, MOST_COMMANDS),
-        ("out_player", np.int64, MOST_COMMANDS),
+        ("out_frame", np.int64, MAX_COMMANDS),
+        ("out_kind", np.int64, MAX_COMMANDS),
+        ("out_index", np.int64, MAX_COMMANDS),
+        ("out_value", np.float64, MAX_COMMANDS),
+        ("out_other", np.float64, MAX_COMMANDS),
+        ("out_player", np.int64, MAX_COMMANDS),
         # Where moves go while tables change.
-        ("saved_move_number", np.int64, MOST_BINDS),
-        ("saved_position", np.float64, MOST_BINDS),
-        ("saved_taken_number", np.int64, MOST_BINDS),
-        ("saved_taken_position", np.float64, MOST_BINDS),
+        ("saved_move_number", np.int64, MAX_BINDS),
+        ("saved_position", np.float64, MAX_BINDS),
+        ("saved_taken_number", np.int64, MAX_BINDS),
+        ("saved_taken_position", np.float64, MAX_BINDS),
     ],
     align=True,
 )
@@ -208,7 +208,7 @@ def emit(
     m: Any, player: int, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
     """Command something of one player at a frame (``player.commands``)."""
-    if m.commands >= MOST_COMMANDS:
+    if m.commands >= MAX_COMMANDS:
         m.lost += 1
         return
     n = m.commands

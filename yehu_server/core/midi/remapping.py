@@ -16,7 +16,7 @@ from yehu_server.core.midi.emit_commands import write
 from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.resets import restore_moves
 from yehu_server.core.midi.sources import set_directly
-from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, Tables
+from yehu_server.core.midi.tables import KEYS, MAX_BINDS, POLY_PRESSURE, Tables
 from yehu_server.core.midi.values import find_values, keep_target
 from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.params.table import TABLE
@@ -79,7 +79,7 @@ def change_start(m: Any, before: Any, t: Any, frame: int, index: int) -> None:
 @compiled_exactly
 def change_moves(m: Any, before: Any, t: Any, channel: int) -> None:
     """Give the moves of a channel the numbers of other binds."""
-    for bind in range(MOST_BINDS):
+    for bind in range(MAX_BINDS):
         m.saved_move_number[bind] = m.saved_taken_number[bind] = 0
     is_pressed = False
     for bind in range(int(t.binds)):
@@ -109,7 +109,7 @@ def change_moves(m: Any, before: Any, t: Any, channel: int) -> None:
 @compiled_exactly
 def change_faders(m: Any, before: Any, t: Any) -> None:
     """Let named controls stay where their bind is the same."""
-    for bind in range(MOST_BINDS):
+    for bind in range(MAX_BINDS):
         m.saved_move_number[bind], m.saved_position[bind] = m.has_fader[bind], m.fader[bind]
         m.saved_taken_position[bind] = m.fader_wrote[bind]
         m.has_fader[bind], m.fader_wrote[bind] = 0, math.nan

@@ -12,7 +12,7 @@ from yehu_server.core.midi.sources import follow
 from yehu_server.core.midi.tables import (
     BEND,
     KEYS,
-    MOST_BINDS,
+    MAX_BINDS,
     NOTE,
     PRESSURE,
     VELOCITY,
@@ -49,7 +49,7 @@ def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
         forget_moves(m, channel)  # velocities
         return
     has_bend, has_pressure, is_saved = False, False, False
-    for bind in range(MOST_BINDS):
+    for bind in range(MAX_BINDS):
         m.saved_move_number[bind] = m.saved_taken_number[bind] = 0
     for bind in range(int(t.binds)):
         first, source = int(t.first[bind]), int(t.source[bind])
@@ -80,7 +80,7 @@ def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
 def restore_moves(m: Any, channel: int) -> None:
     """Give a channel the moves that were set aside."""
     add_active(m, channel)
-    for bind in range(MOST_BINDS):
+    for bind in range(MAX_BINDS):
         m.move_number[channel, bind], m.position[channel, bind] = (
             m.saved_move_number[bind],
             m.saved_position[bind],

@@ -2,7 +2,7 @@
 
 Each player corrects a share, the gain, of how far it was from each of the others at the note
 before [Wing]: A'_i = A_i - gain_i sum_j (A_i - A_j) + a random error. Their asynchronies are
-counted from the earliest, which is on time: nobody is early, and nobody later than `LATEST_MS`.
+counted from the earliest, which is on time: nobody is early, and nobody later than `MAX_LATE_MS`.
 Compiled.
 """
 
@@ -16,7 +16,13 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import ONSETS
 from yehu_server.core.physics.elementary import log10, pseudorandom
-from yehu_server.core.player.parameter_indices import HIGHEST, INDEX, LOWEST, SEED, VARIATION
+from yehu_server.core.player.parameter_indices import (
+    INDEX,
+    LOWER_BOUNDS,
+    SEED,
+    UPPER_BOUNDS,
+    VARIATION,
+)
 
 OWN_SEED, GAIN, PAN, DISTANCE = "/engine/seed", "/output/gain", "/room/pan", "/room/distance"
 OWN = (OWN_SEED, GAIN, PAN, DISTANCE)
@@ -52,12 +58,12 @@ def own_value(index: int, value: float, number: int, players: int) -> float:
         return value
     if index == GAIN_INDEX:
         own = value - 10.0 * log10(players)
-        return float(min(max(own, LOWEST[GAIN_INDEX]), HIGHEST[GAIN_INDEX]))
+        return float(min(max(own, LOWER_BOUNDS[GAIN_INDEX]), UPPER_BOUNDS[GAIN_INDEX]))
     if index == DISTANCE_INDEX:
         from_outside = min(number, players - 1 - number)
         factor = BACK if from_outside % 2 != 0 else FRONT
         own = value * (factor if players > 2 else 1.0)
-        return float(min(max(own, LOWEST[DISTANCE_INDEX]), HIGHEST[DISTANCE_INDEX]))
+        return float(min(max(own, LOWER_BOUNDS[DISTANCE_INDEX]), UPPER_BOUNDS[DISTANCE_INDEX]))
     if index == PAN_INDEX:
         side = min(0.5 * NEIGHBOUR * (players - 1), TO_EITHER_SIDE)
         middle = min(max(value, side - 1.0), 1.0 - side)
@@ -65,11 +71,11 @@ def own_value(index: int, value: float, number: int, players: int) -> float:
     return value
 
 
-LATEST_MS = 40.0
+MAX_LATE_MS = 40.0
 # Standard deviation of the error in each onset, at full variation and at most. At the usual
 # variation it is 9 ms, which leaves onsets of two players 13 ms apart [Wing]. Trios that play
 # different notes have 30 to 50 ms [Rasch].
-ERROR_MS, MOST_ERROR_MS = 36.0, 14.0
+ERROR_MS, MAX_ERROR_MS = 36.0, 14.0
 # The gain that keeps players of a number closest is 1 over it: 0.25 for four [Wing]. Each has one
 # of its own, within these factors. By ear.
 GAIN_LO, GAIN_HI = 0.6, 1.4
@@ -119,14 +125,14 @@ def plan_release(m: Any, frame: int) -> None:
 @compiled_exactly
 def find_lateness(m: Any, frame: int) -> None:
     """Find how late each is for the next onset, if that is planned at a frame."""
-    most, total = LATEST_MS, 0.0
+    most, total = MAX_LATE_MS, 0.0
     n = (m.onsets - 1) % ONSETS
     if m.onsets > 0:
         most = min(most, max(0.0, SHARE * 1e3 * (frame - m.onset_at[n]) / m.rate))
     for i in range(m.playing):
         m.before[i] = 1e3 * m.onset_late[n, i] / m.rate if m.onsets > 0 else 0.0
         total += m.before[i]
-    error = min(ERROR_MS * m.value[VARIATION], MOST_ERROR_MS)
+    error = min(ERROR_MS * m.value[VARIATION], MAX_ERROR_MS)
     first = math.inf
     for i in range(m.playing):
         own = m.before[i]

@@ -32,7 +32,7 @@ from yehu_server.core.midi.values import (
 )
 from yehu_server.core.player.parameter_indices import IS_PLAYER_CONTROLLED
 
-FINE_BITS, FINEST = 7, 16383.0
+FINE_BITS, MAX_14_BITS = 7, 16383.0
 
 
 # -- the sounding notes ---------------------------------------------------------------------------
@@ -193,7 +193,7 @@ def takes_over(m: Any, t: Any, bind: int, channel: int, position: float) -> bool
 @compiled_exactly
 def move_coarse(m: Any, t: Any, frame: int, source: int, channel: int, value: int) -> None:
     """Move a 14-bit source by its coarse half, 0 to 127; the fine half is set to 0."""
-    move(m, t, frame, source, channel, (value << FINE_BITS) / FINEST)
+    move(m, t, frame, source, channel, (value << FINE_BITS) / MAX_14_BITS)
 
 
 @compiled_exactly
@@ -211,8 +211,8 @@ def move_fine(m: Any, t: Any, frame: int, source: int, channel: int, value: int)
     """Set the fine half, 0 to 127, of a source that `move_coarse` moved."""
     before = position_on(m, t, source, channel)
     if not math.isnan(before):
-        coarse = int(np.rint(before * FINEST)) >> FINE_BITS
-        move(m, t, frame, source, channel, (coarse << FINE_BITS | value) / FINEST)
+        coarse = int(np.rint(before * MAX_14_BITS)) >> FINE_BITS
+        move(m, t, frame, source, channel, (coarse << FINE_BITS | value) / MAX_14_BITS)
 
 
 @compiled_exactly

@@ -14,7 +14,7 @@ from yehu_server.core.player.note_range import YEHU
 from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.params.table import TABLE
 
-MOST_BINDS, MOST_POINTS = 256, 2048
+MAX_BINDS, MAX_POINTS = 256, 2048
 KEYS = 128
 PROGRAMS = 128
 SLOTS = 3  # tables of a part: those in use, those that are next, those that are written
@@ -31,25 +31,25 @@ TABLES = np.dtype(
     [
         # Binds, in order.
         ("binds", np.float64),
-        ("source", np.float64, MOST_BINDS),
-        ("first", np.float64, MOST_BINDS),  # number of the first bind of the same source
-        ("target", np.float64, MOST_BINDS),  # index of a parameter
-        ("lo", np.float64, MOST_BINDS),  # the target's values at the ends of the span
-        ("hi", np.float64, MOST_BINDS),
-        ("curve", np.float64, MOST_BINDS),
-        ("first_point", np.float64, MOST_BINDS),
-        ("points", np.float64, MOST_BINDS),
-        ("invert", np.float64, MOST_BINDS),
-        ("smoothing_ms", np.float64, MOST_BINDS),
-        ("channels", np.float64, MOST_BINDS),  # a bit for each that it receives; 0: all
-        ("soft", np.float64, MOST_BINDS),
-        ("by_range", np.float64, MOST_BINDS),  # 1: the bend range sets its span
-        ("for_all", np.float64, MOST_BINDS),  # 1: it is global
-        ("input_lo", np.float64, MOST_BINDS),
-        ("input_hi", np.float64, MOST_BINDS),
-        ("same", np.float64, MOST_BINDS),  # equal for equal binds, of other tables too
-        ("x", np.float64, MOST_POINTS),  # of curves by points
-        ("y", np.float64, MOST_POINTS),
+        ("source", np.float64, MAX_BINDS),
+        ("first", np.float64, MAX_BINDS),  # number of the first bind of the same source
+        ("target", np.float64, MAX_BINDS),  # index of a parameter
+        ("lo", np.float64, MAX_BINDS),  # the target's values at the ends of the span
+        ("hi", np.float64, MAX_BINDS),
+        ("curve", np.float64, MAX_BINDS),
+        ("first_point", np.float64, MAX_BINDS),
+        ("points", np.float64, MAX_BINDS),
+        ("invert", np.float64, MAX_BINDS),
+        ("smoothing_ms", np.float64, MAX_BINDS),
+        ("channels", np.float64, MAX_BINDS),  # a bit for each that it receives; 0: all
+        ("soft", np.float64, MAX_BINDS),
+        ("by_range", np.float64, MAX_BINDS),  # 1: the bend range sets its span
+        ("for_all", np.float64, MAX_BINDS),  # 1: it is global
+        ("input_lo", np.float64, MAX_BINDS),
+        ("input_hi", np.float64, MAX_BINDS),
+        ("same", np.float64, MAX_BINDS),  # equal for equal binds, of other tables too
+        ("x", np.float64, MAX_POINTS),  # of curves by points
+        ("y", np.float64, MAX_POINTS),
         ("mpe", np.float64),  # 1: every port starts as an MPE zone
         ("first_switch", np.float64),  # lowest of the keys that choose an articulation; NaN: none
         # Start values, in order; and by index what the mapping starts with, or the default.

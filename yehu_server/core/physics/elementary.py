@@ -33,7 +33,7 @@ def pseudorandom(number: int) -> float:
 
 MANTISSA_BITS = 52
 EXPONENT_OF_1 = 1023
-LEAST_EXPONENT, MOST_EXPONENT = -1000.0, 1000.0
+MIN_EXPONENT, MAX_EXPONENT = -1000.0, 1000.0
 R_1, R_2, R_3, R_4, R_5 = 1.0 / 2.0, -3.0 / 8.0, 5.0 / 16.0, -35.0 / 128.0, 63.0 / 256.0
 SLIGHT = 1e-3  # below it a few terms of the series are exact to rounding
 
@@ -77,7 +77,7 @@ def exp2(x: float) -> float:
     """
     if math.isnan(x):  # which has no whole number beside it
         return x
-    x = min(max(x, LEAST_EXPONENT), MOST_EXPONENT)
+    x = min(max(x, MIN_EXPONENT), MAX_EXPONENT)
     exponent = np.rint(x)
     t = x - exponent
     t_2 = t * t
@@ -108,7 +108,7 @@ def one_minus_inverse_root(t: float) -> float:
 # The natural logarithm of 2 in two parts, the first of few bits: products with whole numbers are
 # exact.
 LN_2, LN_2_HIGH, LN_2_LOW = 0.6931471805599453, 0.693147180369123816490, 1.90821492927058770002e-10
-LN_10, MOST = 2.302585092994046, 690.0
+LN_10, MAX_EXP_ARGUMENT = 2.302585092994046, 690.0
 BITS_OF_ROOT_HALF = 0x3FE6A09E667F3BCD  # of the square root of 1/2
 # Minimax polynomial of asin(x) / x in x^2, for x from -1/2 to 1/2 (off by 2e-17).
 ARC = (
@@ -131,7 +131,7 @@ ARC = (
 @arithmetic
 def exp(x: float) -> float:
     """Return e to the power of `x`, beyond -690 and 690 as there, to 6e-16. Real time: safe."""
-    x = min(max(x, -MOST), MOST)
+    x = min(max(x, -MAX_EXP_ARGUMENT), MAX_EXP_ARGUMENT)
     exponent = np.rint(x / LN_2)
     return float(exp2(exponent) * exp2(((x - exponent * LN_2_HIGH) - exponent * LN_2_LOW) / LN_2))
 

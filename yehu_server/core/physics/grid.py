@@ -17,7 +17,7 @@ from yehu_server.core.physics.quantities import StringQuantities
 from yehu_server.core.physics.records import Array
 from yehu_server.errors import ParameterError
 
-LOWEST_RATE, HIGHEST_RATE = 22050.0, 192000.0  # Hz
+MIN_RATE, MAX_RATE = 22050.0, 192000.0  # Hz
 
 
 def least_spacing(string: StringQuantities, k: float, headroom: float = 1.0) -> float:
@@ -61,9 +61,9 @@ def check_rate(rate: float) -> None:
     ParameterError
         With the range.
     """
-    if not LOWEST_RATE <= rate <= HIGHEST_RATE:
+    if not MIN_RATE <= rate <= MAX_RATE:
         raise ParameterError(
-            f"sample rate: {rate} Hz is not within {LOWEST_RATE:g} to {HIGHEST_RATE:g} Hz"
+            f"sample rate: {rate} Hz is not within {MIN_RATE:g} to {MAX_RATE:g} Hz"
         )
 
 

@@ -34,7 +34,7 @@ from yehu_server.core.physics.rosin_heat import static_coefficient
 from yehu_server.core.physics.torsion import twist_travel
 
 SETTLED = 1e-12  # m/s, by which the last solves change the velocities of the others
-MOST_SWEEPS = 100
+MAX_SWEEPS = 100
 
 
 def prepare_width(refined: Any, quantities: Quantities) -> None:
@@ -81,7 +81,7 @@ def solve_points(m: Model, state: State, t: Refined, string: int, F_N: float) ->
 
     Returns the number of evaluations of the law.
 
-    Real time: safe; at most MOST_SWEEPS solves of each point.
+    Real time: safe; at most MAX_SWEEPS solves of each point.
     """
     iterations, sweeps, is_solved = 0, 0, True
     while True:
@@ -108,7 +108,7 @@ def solve_points(m: Model, state: State, t: Refined, string: int, F_N: float) ->
             f_b += t.epsilon_2 * v_r
             change = max(change, abs(f_b - t.f_b[e]) * mobility)
             t.f_b[e], t.v_r[e] = f_b, v_r
-        if t.points == 1 or change <= SETTLED or sweeps == MOST_SWEEPS:
+        if t.points == 1 or change <= SETTLED or sweeps == MAX_SWEEPS:
             break
     if not is_solved or (t.points > 1 and change > 100.0 * SETTLED):
         state.unconverged += 1

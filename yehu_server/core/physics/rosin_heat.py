@@ -21,7 +21,7 @@ from yehu_server.core.physics.layout import HEATS, STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Model, Motion, Work
 
-HOTTEST = 3.5  # v_s; by there the Stribeck curve has fallen to mu_C
+MAX_SLIP_SPEED = 3.5  # v_s; by there the Stribeck curve has fallen to mu_C
 
 
 def prepare_heat(model: np.void, quantities: Quantities) -> None:
@@ -30,7 +30,7 @@ def prepare_heat(model: np.void, quantities: Quantities) -> None:
     model["is_thermal"] = bow.friction == "thermal"
     if not model["is_thermal"]:
         return
-    v_r = np.linspace(0.0, HOTTEST * bow.v_s, 8 * HEATS)
+    v_r = np.linspace(0.0, MAX_SLIP_SPEED * bow.v_s, 8 * HEATS)
     mu = bow.mu_C + (bow.mu_S - bow.mu_C) * each(exp, -((v_r / bow.v_s) ** 2))
     w = np.maximum.accumulate(mu * v_r)  # where it would fall, the contact runs through
     heats = np.linspace(0.0, w[-1], HEATS)

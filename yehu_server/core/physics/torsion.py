@@ -29,7 +29,7 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Contacts, Model, Refined, Work
 from yehu_server.errors import ParameterError
 
-HIGHEST = 0.9  # of half the sample rate: modes above are left out
+MAX_OF_NYQUIST = 0.9  # of half the sample rate: modes above are left out
 FADED = 1e-30  # m; numbers near the least that there are would cost a hundred times the others
 
 
@@ -45,7 +45,7 @@ def prepare_torsion(refined: Any, quantities: Quantities, k: float) -> None:
     x_c, most = quantities.bridge_x, 0
     for i, string in enumerate(quantities.strings):
         omega = np.pi * np.arange(1, MAX_TWISTS + 1) / x_c * math.sqrt(string.G / string.rho)
-        omega = omega[omega * k < HIGHEST * np.pi]
+        omega = omega[omega * k < MAX_OF_NYQUIST * np.pi]
         if len(omega) == 0:
             raise ParameterError(
                 f"string_{i + 1}: G {string.G:g} Pa puts its torsional modes above this sample rate"

@@ -38,7 +38,7 @@ from yehu_server.core.player.phrasing import STEP_MS
 from yehu_server.core.player.velocity import has_risen
 
 EACH_MS = 1e3 * HOP_S  # from one call of `articulate` to the next
-SOONEST = 0.55  # of the time between rounds, at least: as quick as hands go
+MIN_ROUND_FRACTION = 0.55  # of the time between rounds, at least: as quick as hands go
 
 
 @compiled_exactly
@@ -67,7 +67,7 @@ def begin_again(track: Any, row: int, count: int, now: float) -> None:
         return
     if track.times + 1 >= SHAPES[row, TIMES]:
         return
-    sooner = max(1.0 - SHAPES[row, SOONER] * track.times, SOONEST)
+    sooner = max(1.0 - SHAPES[row, SOONER] * track.times, MIN_ROUND_FRACTION)
     again = 1e-3 * SHAPES[row, AGAIN] * sooner
     if now >= track.begins + again:
         track.step, track.begins = 0, track.begins + again

@@ -28,7 +28,7 @@ EDGES = np.array((1.3, 4.0))
 # A bowing is an entry of the table, for one note at one place of the bow: the highest bow speed
 # (m/s) at which it speaks; values of /bow/pressure for FLAUTANDO, LIGHT and FIRM; a factor on the
 # distance of the bow from the bridge; the least finger force (N).
-TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, LEAST_PRESS = range(6)
+TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, MIN_PRESS = range(6)
 BOWING_SIZE = 6
 DEFAULT_BOWING = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
 # The notes of the table, as a yehu's strings have them, up to two octaves above the outer one.
@@ -62,7 +62,7 @@ def bowing_value(table: Array, string: int, place: float, pitch: float, column: 
     place : float
         The bow position asked for.
     column : int
-        TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR or LEAST_PRESS.
+        TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR or MIN_PRESS.
     """
     at = log(place)
     row = 0

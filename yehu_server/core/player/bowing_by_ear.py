@@ -22,8 +22,8 @@ ROUGH = 0.8  # certainty below which it has no period
 PATIENCE = 12  # hearings of the same fault before the hand acts
 GRACE = 8  # hearings until it judges what it did
 EASY = 16  # hops in Helmholtz motion before the correction is halved
-HEAVIER, LIGHTER = 1.25, 0.8  # steps of the factor on the bow's pressure
-LIGHTEST, HEAVIEST, HEAVIEST_FLAUTANDO = 0.5, 1.8, 1.3
+HEAVIER_STEP, LIGHTER_STEP = 1.25, 0.8  # steps of the factor on the bow's pressure
+MIN_PRESSURE_FACTOR, MAX_PRESSURE_FACTOR, MAX_FLAUTANDO_FACTOR = 0.5, 1.8, 1.3
 EVEN = 0.05  # nearer to 1 than this the factor is 1
 SPEAKS, TOO_LIGHT, TOO_HEAVY = 0, 1, 2
 
@@ -50,7 +50,7 @@ def may_correct_pressure(p: Any) -> bool:
 @compiled_exactly
 def heaviest(p: Any) -> float:
     """The largest factor on the bow's pressure."""
-    return HEAVIEST_FLAUTANDO if p.value[PRESSURE] <= FLAUTANDO else HEAVIEST
+    return MAX_FLAUTANDO_FACTOR if p.value[PRESSURE] <= FLAUTANDO else MAX_PRESSURE_FACTOR
 
 
 @compiled_exactly
@@ -87,9 +87,9 @@ def correct_pressure(p: Any, c: Any, pitch: float) -> None:
     if was_eased and p.pressure_factor != p.eased_from:
         p.pressure_factor = p.eased_from  # it needs all of the help
     elif fault == TOO_LIGHT:
-        p.pressure_factor = min(p.pressure_factor * HEAVIER, heaviest(p))
+        p.pressure_factor = min(p.pressure_factor * HEAVIER_STEP, heaviest(p))
     else:
-        p.pressure_factor = max(p.pressure_factor * LIGHTER, LIGHTEST)
+        p.pressure_factor = max(p.pressure_factor * LIGHTER_STEP, MIN_PRESSURE_FACTOR)
     p.eased_from = p.pressure_factor if was_eased else 0.0
     set_bow_pressure(p, c, pitch, True)
 

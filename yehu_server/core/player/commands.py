@@ -36,11 +36,10 @@ from yehu_server.core.player.parameter_indices import (
     DYNAMICS,
     EVENNESS,
     EXPRESSION,
-    HIGHEST,
     IS_ENGINES,
     IS_PLAYER_CONTROLLED,
     LISTENING,
-    LOWEST,
+    LOWER_BOUNDS,
     PARAMETER_COUNT,
     PHRASING,
     PLAYING_VIBRATO_PRESS,
@@ -53,6 +52,7 @@ from yehu_server.core.player.parameter_indices import (
     SMOOTH_MS,
     SPEED,
     TREMOLO,
+    UPPER_BOUNDS,
     VELOCITY,
     VIBRATO,
     VOLUME,
@@ -64,7 +64,7 @@ KINDS = (
     "ramp", "write", "hold", "express", "begin", "end", "slide", "draw", "lift", "stop", "release",
 )  # fmt: skip
 RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, DRAW, LIFT, STOP, RELEASE = range(len(KINDS))
-LONGEST = 1e9  # frames of a ramp, ms of a glide
+MAX_RAMP = 1e9  # frames of a ramp, ms of a glide
 
 COMMAND = np.dtype(
     [
@@ -90,7 +90,7 @@ def apply(
     if not (math.isfinite(value) and math.isfinite(other)):
         return
     if kind == RAMP:
-        take(c, index, value, int(bounded(other, 0.0, LONGEST)))
+        take(c, index, value, int(bounded(other, 0.0, MAX_RAMP)))
     elif kind == BEGIN:
         notes.begin(p, c, frame, index, value, playable(p, other))
     elif kind == END:
@@ -108,7 +108,7 @@ def apply(
         p.is_direct = 0
     elif 0 <= index < PARAMETER_COUNT:
         if kind in (WRITE, HOLD):
-            glide_ms = bounded(other, 0.0, LONGEST)
+            glide_ms = bounded(other, 0.0, MAX_RAMP)
             write(p, c, index, in_range(index, value), kind == HOLD, glide_ms)
         elif kind == EXPRESS:
             express(p, c, index, in_range(index, value))
@@ -129,7 +129,7 @@ def playable(p: Any, pitch: float) -> float:
 @compiled_exactly
 def in_range(index: int, value: float) -> float:
     """The value nearest to one that a parameter can have."""
-    return bounded(value, LOWEST[index], HIGHEST[index])
+    return bounded(value, LOWER_BOUNDS[index], UPPER_BOUNDS[index])
 
 
 @compiled_exactly
@@ -168,7 +168,7 @@ def follow(p: Any, c: Any, index: int) -> None:
     if index in (BEND, SHARPENING_CORRECTION):
         notes.follow_bend(p, c)
     elif index == PRESS:
-        left_hand.press(p, c, notes.least_press(p, max(p.string, 0)), left_hand.LANDING_MS)
+        left_hand.press(p, c, notes.min_press(p, max(p.string, 0)), left_hand.LANDING_MS)
     elif index == DYNAMICS:
         notes.draw_on(p, c)
         notes.follow_bend(p, c)

@@ -48,7 +48,7 @@ CORRELATION = 0.6  # with it
 UNEVEN_PACE, UNEVEN_WIDTH = 0.4, 0.4
 TURN_CORRELATION = 0.85
 TURN_NOISE = math.sqrt(3.0 * (1.0 - TURN_CORRELATION * TURN_CORRELATION))
-MOST_UNEVEN = 0.5  # of rate and width, up or down
+MAX_UNEVEN = 0.5  # of rate and width, up or down
 FOLLOW = 0.15  # of the way to those of the next turn, in a hop
 
 TIMES_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
@@ -153,7 +153,7 @@ def next_turn_deviate(p: Any, which: int) -> float:
 @compiled_exactly
 def turn_factor(by: float) -> float:
     """The factor of a turn that differs by so much, within what a hand does."""
-    return 1.0 + min(max(by, -MOST_UNEVEN), MOST_UNEVEN)
+    return 1.0 + min(max(by, -MAX_UNEVEN), MAX_UNEVEN)
 
 
 @compiled_exactly

@@ -43,14 +43,14 @@ SHAPED = Articulation(
     ),
     length_s=1.2,
 )  # fmt: skip
-SHAPED_AT, LEAST_SHAPED_S = 0.5, 0.35
+SHAPED_AT, MIN_SHAPED_S = 0.5, 0.35
 # Of the attack of a shaped note: its factor for a short note and for a long one (s). By ear; in
 # recordings of an erhu and a violin a tenth of the notes rise within 30 ms and half in 120 to 250.
 SHORT_ATTACK, LONG_ATTACK, LONG_S, UNEVEN_ATTACK = 0.8, 3.4, 1.2, 0.3
-LOWEST_STOPPED = 65.6  # MIDI note: a finger there is over 8 mm from the loop
+MIN_STOPPED_PITCH = 65.6  # MIDI note: a finger there is over 8 mm from the loop
 FITS = 0.7  # of a note, for steps that have times of their own
 # The level is this power of the bow's factor, on top of what a faster bow gives, as with dynamics.
-LEVEL_EXPONENT, LEAST_FACTOR = 0.6, 0.1
+LEVEL_EXPONENT, MIN_FACTOR = 0.6, 0.1
 
 _ROWS: tuple[Articulation, ...] = (*ARTICULATIONS, SHAPED)
 SHAPED_ROW = len(ARTICULATIONS)
@@ -213,7 +213,7 @@ def touch(p: Any) -> None:
 @compiled_exactly
 def within_reach(p: Any, semitones: float) -> float:
     """Where a finger can be, from the note's pitch: not lower than the lowest that one stops."""
-    lowest = LOWEST_STOPPED - p.held_pitch[p.sounding]
+    lowest = MIN_STOPPED_PITCH - p.held_pitch[p.sounding]
     return float(max(semitones, min(lowest, 0.0)))
 
 
@@ -230,7 +230,7 @@ def shape(p: Any, c: Any) -> None:
     longer = min(length / LONG_S, 1.0) if c.value[BOW_SPEED] == 0.0 else 0.0
     factor = (SHORT_ATTACK + (LONG_ATTACK - SHORT_ATTACK) * longer) * max(uneven, 0.4)
     g.attack = max(1.0 + amount * (factor - 1.0), 0.4)
-    if length >= LEAST_SHAPED_S:
+    if length >= MIN_SHAPED_S:
         g.row, g.scale = SHAPED_ROW, amount * max(1.0 + 0.4 * deviate(p), 0.0)
 
 
@@ -271,7 +271,7 @@ def fitting(needed_ms: float, at_share: float, length_ms: float) -> float:
 def gain_of(g: Any) -> float:
     """Gain of the level (dB) at the bow's factor on its speed, beyond what the speed gives."""
     own = GAINS_DB[string_of(g.node)] if g.node != NONE else 0.0
-    if g.is_off != 0 or g.speed <= LEAST_FACTOR:
+    if g.is_off != 0 or g.speed <= MIN_FACTOR:
         return float(own)
     return float(own + 20.0 * LEVEL_EXPONENT * log10(g.speed))
 

@@ -25,7 +25,7 @@ from yehu_server.core.player.phrasing import STEP_MS, varied_landing
 # (scripts/playability.py legato tries more).
 LANDING_MS, LIFTING_MS = 3.0, 5.0
 # A position nearer than this is reached by a slide, as no second finger fits beside the first.
-NEAREST_STEP = 2e-3  # m
+MIN_STEP = 2e-3  # m
 SETTLING_MS = 8.0
 # A finger that lands while the bow changes strings: it stops both, and would strike the one left.
 CROSSING_LANDING_MS = 10.0
@@ -64,7 +64,7 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
             land(p, c, position)
         press(p, c, least_press, landing_ms)
         return
-    if slide_ms < 0.0 and abs(position - before) < NEAREST_STEP:
+    if slide_ms < 0.0 and abs(position - before) < MIN_STEP:
         slide_ms = SETTLING_MS
     if slide_ms >= 0.0:
         move(p, c, FINGER_POSITION[p.finger], position, slide_ms)

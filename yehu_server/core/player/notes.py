@@ -12,7 +12,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import take
 from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import left_hand, right_hand, velocity, vibrato
-from yehu_server.core.player.bowing import LEAST_PRESS, bowing_value
+from yehu_server.core.player.bowing import MIN_PRESS, bowing_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import choose, choose_for_slide, stay
 from yehu_server.core.player.gestures import (
@@ -75,7 +75,9 @@ BEND_RAMP_MS = find("/playing/bend").smooth_ms
 # The level is this power of dynamics: together with the slower bow, dynamics 0.5 is some 12 dB
 # below 1, and 0.1 some 35 dB. By ear.
 DYNAMICS_EXPONENT = 1.5
-FARTHEST_KEY = 0.5  # semitones, of a pitch from a key: what bends farther slides by itself
+MAX_SEMITONES_FROM_KEY = (
+    0.5  # semitones, of a pitch from a key: what bends farther slides by itself
+)
 SETTLING_MS = 35.0  # in which a string comes to its pitch, and what is heard is all of it
 
 
@@ -170,7 +172,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
             shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p)
             string, position = choose(p, pitch, beats, shakes, requested_speed(p))
     crosses_strings = string != p.string
-    left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
+    left_hand.stop(p, c, string, position, min_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)
     pause_listening(p, c, max(slide_ms, SLURRED_MS if is_slur else attack_ms(p)))
@@ -195,7 +197,7 @@ def slide_into_note_ms(p: Any, c: Any) -> float:
         return STEP_MS
     if is_on(p, PORTAMENTO):
         return float(p.value[PORTAMENTO_TIME])
-    is_bent = abs(p.value[BEND]) > FARTHEST_KEY
+    is_bent = abs(p.value[BEND]) > MAX_SEMITONES_FROM_KEY
     if is_bent or is_plucked(p) or not BEARS_SLIDE[p.gesture.row]:
         return STEP_MS
     return slide_of_leap_ms(p, c, note_pitch(p) - p.finger_pitch)
@@ -305,12 +307,12 @@ def set_bow_pressure(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def least_press(p: Any, string: int) -> float:
+def min_press(p: Any, string: int) -> float:
     """The finger force (N) that the sounding note needs on a string."""
     if p.sounding < 0:
         return 0.0
     stopped = in_tables(p, string, note_pitch(p))
-    return bowing_value(p.bowing_table, string, p.value[POSITION], stopped, LEAST_PRESS)
+    return bowing_value(p.bowing_table, string, p.value[POSITION], stopped, MIN_PRESS)
 
 
 @compiled_exactly
@@ -350,7 +352,7 @@ def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
         even_out(p, c)
         return
     string, position = stay(p, pitch, slide_ms == STEP_MS, requested_speed(p))
-    left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
+    left_hand.stop(p, c, string, position, min_press(p, string), slide_ms)
     if string != before:
         begin_tuning(p, pitch)
     if string != before or not right_hand.is_bowed_alike(p, pitch):

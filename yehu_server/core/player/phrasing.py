@@ -23,7 +23,7 @@ ADDED = 12
 # Standard deviations at full variation. By ear.
 VARIED_FRACTION = 0.1  # of bow speed and pressure
 VARIED_CENTS = 6.0
-VARIED_LANDING, MOST_LANDING = 0.8, 2.0  # of the time of a landing; and its largest factor
+VARIED_LANDING, MAX_LANDING = 0.8, 2.0  # of the time of a landing; and its largest factor
 
 
 @compiled_exactly
@@ -65,14 +65,14 @@ def varied_landing(p: Any, landing_ms: float) -> float:
     if p.value[VARIATION] == 0.0:
         return landing_ms
     factor = 1.0 + p.value[VARIATION] * VARIED_LANDING * deviate(p)
-    return float(landing_ms * min(max(factor, 1.0 / MOST_LANDING), MOST_LANDING))
+    return float(landing_ms * min(max(factor, 1.0 / MAX_LANDING), MAX_LANDING))
 
 
 # At full phrasing; by ear.
-SLIDE_MS, SHORTEST_SLIDE_MS = 130.0, 45.0
+SLIDE_MS, MIN_SLIDE_MS = 130.0, 45.0
 STEP_MS = -1.0  # in place of the time of a slide
 # A leap asks for a slide where it is so wide (semitones), from a note and to a note so long.
-LEAST_LEAP, WIDEST_LEAP, LONG_S = 4.5, 9.5, 0.3
+MIN_LEAP, MAX_LEAP, LONG_S = 4.5, 9.5, 0.3
 
 
 # Strokes that follow another within EASY_S are hurried, wholly from HURRIED_S on: the bow comes to
@@ -107,8 +107,8 @@ def slide_of_leap_ms(p: Any, c: Any, leap: float) -> float:
     """
     if p.value[PHRASING] == 0.0 or c.value[SIDE] == 0.0 or p.value[NOTE_LENGTH] > 0.0:
         return STEP_MS
-    is_wide = LEAST_LEAP < abs(leap) < WIDEST_LEAP
+    is_wide = MIN_LEAP < abs(leap) < MAX_LEAP
     is_long = c.frame - p.note_began > LONG_S * p.rate
     if not is_wide or not is_long:
         return STEP_MS
-    return float(SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * p.value[PHRASING])
+    return float(MIN_SLIDE_MS + (SLIDE_MS - MIN_SLIDE_MS) * p.value[PHRASING])

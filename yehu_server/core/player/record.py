@@ -39,7 +39,7 @@ from yehu_server.params.table import TABLE
 LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES = 52, 11, 11
 # Keys held at most. Beyond, the one held longest is let go: by the part (``midi.part_keys``), each
 # player of a section (``midi.section``) and each instrument (``held_keys``) of its own list.
-MOST_HELD = 256
+MAX_HELD = 256
 NOTES = len(PITCHES[0])  # measured on each string
 
 PLAYER = np.dtype(
@@ -53,9 +53,9 @@ PLAYER = np.dtype(
         ("glide_ms", np.float64),  # the least time of each move
         # The held keys, in the order pressed.
         ("held", np.int64),  # their number
-        ("held_channel", np.int64, MOST_HELD),
-        ("held_key", np.float64, MOST_HELD),
-        ("held_pitch", np.float64, MOST_HELD),  # fractional MIDI notes within range
+        ("held_channel", np.int64, MAX_HELD),
+        ("held_key", np.float64, MAX_HELD),
+        ("held_pitch", np.float64, MAX_HELD),  # fractional MIDI notes within range
         ("sounding", np.int64),  # number of the held key that sounds, SILENT or ENDING
         ("began", np.int64),  # the frame at which the stroke of the bow began
         ("note_began", np.int64),  # the frame at which the note did

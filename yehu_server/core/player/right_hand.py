@@ -58,22 +58,23 @@ CROSSING_PART, CROSSING_MS = 0.65, 36.0
 PUT_AWAY_MS = 20.0  # before a pluck
 SLURRED_MS = 25.0  # ramp of bow speed from one slurred note to the next
 # Bow speed at dynamics 0, as a fraction of that at full dynamics. By ear.
-SOFTEST = 0.45
-LEAST_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow is lifted
-# A heavy stroke on the inner string begins with this share of its pressure: its first periods are
-# long under more, and it begins flat. Under LIGHTEST it may slip twice in a period. Tried at 0.3 to
-# 0.9 and 60 to 200 ms, F4 to B4, at three dynamics. Hurried strokes have little pressure already.
-LIGHTER, LIGHTEST, LIGHTER_MS = 0.65, 0.4, 150.0
+MIN_SPEED_FRACTION = 0.45
+MIN_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow is lifted
+# A heavy stroke on the inner string begins with this share of its pressure: with more, the first
+# periods are too long and the note begins flat. Under MIN_INNER_ATTACK it may slip twice in a
+# period. Tried at 0.3 to 0.9 and 60 to 200 ms, F4 to B4, at three dynamics. Hurried strokes have
+# little pressure already.
+INNER_ATTACK_FRACTION, MIN_INNER_ATTACK, INNER_ATTACK_MS = 0.65, 0.4, 150.0
 # Force of a pluck at medium pressure. By ear.
 PULL_N, MEDIUM = 1.2, 0.4
-HARDEST_PULL_N = find("/pluck/force").hi
+MAX_PLUCK_FORCE_N = find("/pluck/force").hi
 USUAL_PLUCK = find("/pluck/position").default
 
 
 @compiled_exactly
 def requested_speed(p: Any) -> float:
     """The bow speed that is asked for (m/s)."""
-    share = SOFTEST + (1.0 - SOFTEST) * p.value[DYNAMICS]
+    share = MIN_SPEED_FRACTION + (1.0 - MIN_SPEED_FRACTION) * p.value[DYNAMICS]
     return float(p.value[SPEED] * share * struck_speed(p) * p.speed_variation * p.pace)
 
 
@@ -129,8 +130,8 @@ def bite(p: Any, c: Any) -> None:
     usual = p.sent[BOW_PRESSURE]
     begins, ms = struck_bite(p) * usual, BITE_MS
     if p.string == 0:
-        lighter = max(LIGHTER * usual, LIGHTEST)
-        begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), LIGHTER_MS
+        lighter = max(INNER_ATTACK_FRACTION * usual, MIN_INNER_ATTACK)
+        begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), INNER_ATTACK_MS
     if begins != usual:
         move(p, c, BOW_PRESSURE, begins, 0.0)
         move(p, c, BOW_PRESSURE, usual, ms)
@@ -140,10 +141,10 @@ def bite(p: Any, c: Any) -> None:
 def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
     """Draw the bow on the string of a side; its speed changes in `ramp_ms`.
 
-    A lifted bow attacks in ``/playing/attack`` instead. Below LEAST_DYNAMICS the bow is
+    A lifted bow attacks in ``/playing/attack`` instead. Below MIN_DYNAMICS the bow is
     lifted.
     """
-    if p.value[DYNAMICS] < LEAST_DYNAMICS:
+    if p.value[DYNAMICS] < MIN_DYNAMICS:
         if p.side != 0.0:
             lift(p, c, p.value[RELEASE])
         return
@@ -179,7 +180,7 @@ def pluck(p: Any, c: Any, side: float) -> None:
     elif not math.isnan(p.sent[PLUCK_POSITION]):  # after one that was plucked elsewhere
         move(p, c, PLUCK_POSITION, USUAL_PLUCK, 0.0)
     force = PULL_N * p.value[PRESSURE] * p.weight * SHAPES[p.gesture.row, PLUCKED_BY] / MEDIUM
-    move(p, c, PLUCK_FORCE, side * min(force, HARDEST_PULL_N), USUAL_MS)
+    move(p, c, PLUCK_FORCE, side * min(force, MAX_PLUCK_FORCE_N), USUAL_MS)
     forget(p, PLUCK_FORCE)  # the next one may be as hard
 
 

@@ -15,7 +15,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.parameter_indices import BOW_LENGTH, BOW_SPEED, DIRECTION, NOTE_LENGTH
 
 USUAL_S = 0.4  # a note lasts, where nothing says so
-SLOWEST = 0.6  # factor on the speed of a bow that has to last
+MIN_SPEED_FACTOR = 0.6  # factor on the speed of a bow that has to last
 END = 0.04  # part of the bow at either end that strokes don't begin or end on
 START = 0.15  # part of the bow behind a stroke that begins after a rest: hair to go back on
 CHANGE_MS = 28.0  # time in which a bow changes its direction within a note
@@ -55,10 +55,10 @@ def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
         if command != 0.0 or hair_left(p, c, p.direction) < needed or behind < begin * length:
             c.place = length * (begin if p.direction > 0.0 else 1.0 - begin)
     left, other = hair_left(p, c, p.direction), hair_left(p, c, -p.direction)
-    if left < SLOWEST * needed and left < other and command == 0.0:
+    if left < MIN_SPEED_FACTOR * needed and left < other and command == 0.0:
         p.direction, left = -p.direction, other
     if is_known and left < needed:
-        p.pace = max(SLOWEST, left / needed)
+        p.pace = max(MIN_SPEED_FACTOR, left / needed)
     return bool(p.direction != before)
 
 

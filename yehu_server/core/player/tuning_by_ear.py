@@ -22,13 +22,13 @@ from yehu_server.core.player.right_hand import requested_speed
 SLOWLY, QUICKLY, SMALL_CENTS, LARGE_CENTS = 2.5, 12.0, 4.0, 10.0
 # A pitch that is so far off for so many hearings, and then on the other side, has jumped; as often
 # as this, and the finger rests.
-FAR_CENTS, LASTING, MOST_JUMPS = 2.5, 16, 2
-MOST_CENTS = 100.0  # of all corrections
+FAR_CENTS, LASTING, MAX_JUMPS = 2.5, 16, 2
+MAX_CENTS = 100.0  # of all corrections
 ENOUGH_CENTS = 0.3  # nearer than this the finger rests
 # A pitch that follows the finger needs a correction as large as its first error. Beyond this part
 # of it, and so many cents, it doesn't follow: it is locked to the body or to the other string.
 ASTRAY, ASTRAY_CENTS = 1.5, 15.0
-FEWEST_SLIPS, MOST_SLIPS = 0.5, 1.6  # in a period, of a string that sounds its note
+MIN_SLIPS, MAX_SLIPS = 0.5, 1.6  # in a period, of a string that sounds its note
 
 
 @compiled_exactly
@@ -43,7 +43,7 @@ def begin_tuning(p: Any, pitch: float) -> None:
 def tune(p: Any, c: Any, pitch: float) -> None:
     """Correct the finger by what is heard of the sounding pitch, where that is sure."""
     ear = p.ear
-    if ear.certainty < SURE or not FEWEST_SLIPS < ear.slips < MOST_SLIPS or p.position < 0.0:
+    if ear.certainty < SURE or not MIN_SLIPS < ear.slips < MAX_SLIPS or p.position < 0.0:
         return
     finger = FINGER_POSITION[p.finger]
     if p.taken[finger] != 0 or p.is_held[finger] != 0:
@@ -62,14 +62,14 @@ def tune(p: Any, c: Any, pitch: float) -> None:
         return
     uncorrected = ear.error + p.sharper
     wanted = p.value[LISTENING] * uncorrected - p.sharper
-    if jumps(p, wanted) >= MOST_JUMPS:
+    if jumps(p, wanted) >= MAX_JUMPS:
         p.first_error = math.inf
         return
     if abs(wanted) > ENOUGH_CENTS:
         large = (abs(wanted) - SMALL_CENTS) / (LARGE_CENTS - SMALL_CENTS)
         rate = SLOWLY + (QUICKLY - SLOWLY) * min(max(large, 0.0), 1.0)
         p.sharper += rate * wanted * ear.hop / p.rate
-        p.sharper = min(max(p.sharper, -MOST_CENTS), MOST_CENTS)
+        p.sharper = min(max(p.sharper, -MAX_CENTS), MAX_CENTS)
         place_finger(p, c, pitch)
     p.learnt[p.string, row, place, pace] = p.sharper
 

@@ -32,7 +32,7 @@ from yehu_server.core.player.parameter_indices import (
     VIBRATO_RATE,
     VIBRATO_UPWARD,
 )
-from yehu_server.core.player.vibrato_table import CENTRE, DEPTH_SHARE, STEPS, USUAL
+from yehu_server.core.player.vibrato_table import CENTRE, DEFAULT_DEPTH_CENTS, DEPTH_SHARE, STEPS
 
 # The player's own, at full phrasing; by ear.
 OWN_CENTS, LATE_MS = 60.0, 750.0
@@ -42,7 +42,7 @@ AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
 FADING_MS = 600.0  # after the last note
 # How players of a section differ in rate, depth and delay of their vibrato, and its least factor.
 OTHER_RATE, OTHER_DEPTH, OTHER_DELAY = 0.3, 0.9, 1.2
-LEAST_OTHER = 0.4
+MIN_OTHER = 0.4
 FRAMES_FROM = 3 << 30  # of the seed's numbers: those that frames have; `drift` has some before
 
 
@@ -54,7 +54,7 @@ def set_vibrato(p: Any, c: Any) -> None:
     cents, upward = row[CENTS] if own else requested_cents(p), row[UPWARD_SHARE] if own else 0.0
     if upward == 0.0:
         at = vibrato_row(p)
-        cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, USUAL))
+        cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, DEFAULT_DEPTH_CENTS))
         upward = p.vibrato_table[at, CENTRE]
     hertz = row[HERTZ] if own else p.value[PLAYING_VIBRATO_RATE]
     press = row[PRESS_SHARE] if own else p.value[PLAYING_VIBRATO_PRESS]
@@ -144,7 +144,7 @@ def other_factor(p: Any, number: int, varied: float) -> float:
     if p.player_number == 0:
         return 1.0
     differs = math.sqrt(3.0) * pseudorandom((p.player_number << 32) + number)
-    return float(max(1.0 + p.value[VARIATION] * varied * differs, LEAST_OTHER))
+    return float(max(1.0 + p.value[VARIATION] * varied * differs, MIN_OTHER))
 
 
 @compiled_exactly

@@ -15,7 +15,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.elementary import exp10, tan
 
 CROSSOVER = 2500.0  # Hz
-HIGHEST_DAMPING = 0.8
+MAX_DAMPING = 0.8
 DECAYED_DB = 60.0
 
 
@@ -28,7 +28,7 @@ def loss_low(decay: float) -> float:
 @compiled_exactly
 def loss_high(decay: float, damping: float) -> float:
     """Loss at high frequencies (dB/s); a damping of 1 has them decay in a fifth of the time."""
-    return DECAYED_DB / (decay * (1.0 - HIGHEST_DAMPING * damping))
+    return DECAYED_DB / (decay * (1.0 - MAX_DAMPING * damping))
 
 
 @compiled_exactly

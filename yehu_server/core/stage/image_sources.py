@@ -22,7 +22,7 @@ WIDTH, HEIGHT = 0.83, 0.62  # of a room, over its length
 LISTENER_X, LISTENER_Y = 0.46, 0.31  # over width and length of the room
 # Both sit, and in a room that is lower than this, lower: m, and over its height.
 LISTENER_Z, PLAYER_Z = 1.2, 0.8
-LISTENER_HIGHEST, PLAYER_HIGHEST = 0.45, 0.3
+MAX_LISTENER_HEIGHT, MAX_PLAYER_HEIGHT = 0.45, 0.3
 WALL_GAP = 0.3  # m; the least from a player to a wall
 EAR_X = 0.085  # m from the middle of the head
 FAR_SIDE = math.pi / 4.0  # direction of a player at pan 1, to the right of straight ahead
@@ -90,11 +90,11 @@ def find_images(
     """
     width, height = WIDTH * size, HEIGHT * size
     at_x, at_y = LISTENER_X * width, LISTENER_Y * size
-    at_z = min(LISTENER_Z, LISTENER_HIGHEST * height)
+    at_z = min(LISTENER_Z, MAX_LISTENER_HEIGHT * height)
     direction = FAR_SIDE * pan
     x = within(at_x + distance * sin(direction), WALL_GAP, width - WALL_GAP)
     y = within(at_y + distance * cos(direction), WALL_GAP, size - WALL_GAP)
-    z = min(PLAYER_Z, PLAYER_HIGHEST * height)
+    z = min(PLAYER_Z, MAX_PLAYER_HEIGHT * height)
     direct = length(x - at_x, y - at_y, z - at_z)
     reflected = reflection(size, decay)
     for wall in range(WALLS):

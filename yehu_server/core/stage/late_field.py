@@ -36,8 +36,11 @@ LENGTH = 1 << 15  # most frames of a line, and of the span that it is kept in
 # Frames between two lines: with a span of a power of two alone, all would fall into the same set of
 # the processor's cache.
 APART = LENGTH + 24
-SHORTEST, LONGEST = 0.5, 1.5  # of the lines, over the middle one
-LEAST_S, MOST_S = 0.03, 0.11  # of the middle line; shorter ones have too few modes not to ring
+MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 0.5, 1.5  # of the lines, over the middle one
+MIN_MIDDLE_S, MAX_MIDDLE_S = (
+    0.03,
+    0.11,
+)  # of the middle line; shorter ones have too few modes not to ring
 PATHS = 3.0  # mean free paths in the middle line
 INTO_LINES = 1.0 / math.sqrt(LINES)
 # When sound enters each line, and with which sign: the left in even lines, the right in odd ones.
@@ -55,7 +58,7 @@ DIFFUSER_S = np.array([[0.0009, 0.0023], [0.0011, 0.0021]])
 # Which line's sound enters a line again: so that two ways round of the same lines in another order,
 # which take the same time, do not add up.
 TURN, SHIFT = 5, 3
-LARGEST_GAP = 128 + CHUNK  # frames by which a prime may be longer than asked, and a block
+MAX_GAP = 128 + CHUNK  # frames by which a prime may be longer than asked, and a block
 MOVE_S = 0.05  # in which lines take on the lengths of another size
 CLOSE_S, OPEN_S = 0.005, 0.02  # fades when the room is emptied
 # Of what is in the lines, in full scale: 55 dB below half a step of 24 bits, as eight are heard at
@@ -122,7 +125,7 @@ def prepare_room(room: Any, rate: float) -> None:
     room["rate"] = rate
     room["close_step"], room["open_step"] = 1.0 / (CLOSE_S * rate), 1.0 / (OPEN_S * rate)
     room["move_step"] = 1.0 / (MOVE_S * rate)
-    room["mask"] = power_of_two(LONGEST * MOST_S * rate + LARGEST_GAP) - 1
+    room["mask"] = power_of_two(MAX_LENGTH_RATIO * MAX_MIDDLE_S * rate + MAX_GAP) - 1
     room["entry_mask"] = power_of_two(ENTRY_S.max() * rate + CHUNK) - 1
     room["entry"] = np.round(ENTRY_S * rate)
     room["diffuser_length"] = np.round(DIFFUSER_S * rate)
@@ -183,10 +186,10 @@ def measure(r: Any, size: float) -> None:
     """Give the lines the lengths that belong to a size (m): primes, in equal ratios."""
     r.size = size
     middle = PATHS * image_sources.mean_free_path(size) / image_sources.SOUND
-    middle = min(max(middle, LEAST_S), MOST_S)
+    middle = min(max(middle, MIN_MIDDLE_S), MAX_MIDDLE_S)
     frames = 0
     for i in range(LINES):
-        ratio = SHORTEST * power(LONGEST / SHORTEST, i / (LINES - 1.0))
+        ratio = MIN_LENGTH_RATIO * power(MAX_LENGTH_RATIO / MIN_LENGTH_RATIO, i / (LINES - 1.0))
         r.was_length[i] = r.length[i]
         r.length[i] = next_prime(int(middle * ratio * r.rate))
         frames += r.length[i]

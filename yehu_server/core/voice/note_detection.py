@@ -19,7 +19,7 @@ from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
 from yehu_server.core.player.parameter_indices import DYNAMICS, STRING
-from yehu_server.core.player.right_hand import SOFTEST
+from yehu_server.core.player.right_hand import MIN_SPEED_FRACTION
 from yehu_server.core.voice.pitch_detection import HEARING, HOP_S, prepare_hearing
 
 # -- when it is sure ------------------------------------------------------------------------------
@@ -32,12 +32,12 @@ DOUBTED = 6  # hearings without a voice that end a note
 LEAP = 0.8  # semitones from one hearing to the next that no voice slides
 # -- the gate, dB of full scale: the level over the noise between notes at which a note begins.
 # The noise is what is heard there, quickly if it is less, slowly if more.
-OVER_NOISE_DB, CLOSES_DB, LEAST_DB = 10.0, 5.0, -65.0
+OVER_NOISE_DB, CLOSES_DB, MIN_GATE_DB = 10.0, 5.0, -65.0
 FALLS, RISES = 0.1, 0.01  # parts of the difference, by hearing
 # -- dynamics: full ones are at the highest level, which is forgotten slowly.
-QUIETEST_FULL_DB, FORGOTTEN_DB = -55.0, 0.5 * HOP_S
+MIN_FULL_DB, FORGOTTEN_DB = -55.0, 0.5 * HOP_S
 FELT_DB = 0.4  # dynamics less apart are the same
-LEAST_DYNAMICS = 0.03  # at which a note still speaks
+MIN_DYNAMICS = 0.03  # at which a note still speaks
 # -- struck again: the level falls and rises so much, faster than it swells; a sound that stays
 # like itself meanwhile, as with the vibrato of a violin, rises by more.
 FALL_DB, RISE_DB, SWELL_DB, PEAK_DB = 3.0, 5.0, 90.0 * HOP_S, 40.0 * HOP_S
@@ -53,19 +53,19 @@ ON_INNER, ON_OUTER = 2.5, 0.3
 INNER, EITHER = 1.0, 0.0
 VOICE = -2  # the channel of its notes
 VOICE_KEYS = (0.0, 1.0)  # which it has in turn: of two that are slurred, both are held for a moment
-MOST_COMMANDS = 8
+MAX_COMMANDS = 8
 
 
 def dynamics_of(level_db: Any) -> Any:
     """The dynamics that are so many dB below full ones, as ``player`` plays them."""
-    dynamics = each(exp, np.linspace(log(LEAST_DYNAMICS), 0.0, 400))
-    speed = SOFTEST + (1.0 - SOFTEST) * dynamics
+    dynamics = each(exp, np.linspace(log(MIN_DYNAMICS), 0.0, 400))
+    speed = MIN_SPEED_FRACTION + (1.0 - MIN_SPEED_FRACTION) * dynamics
     level = DYNAMICS_EXPONENT * each(log10, dynamics) + each(log10, speed)
     return np.interp(level_db, 20.0 * level, dynamics)
 
 
-QUIETEST_DB, STEPS = -60, 4  # by dB
-BY_LEVEL = dynamics_of(np.arange(0, STEPS * QUIETEST_DB, -1) / STEPS)
+MIN_DB, STEPS = -60, 4  # by dB
+BY_LEVEL = dynamics_of(np.arange(0, STEPS * MIN_DB, -1) / STEPS)
 
 FOLLOWER = np.dtype(
     [
@@ -102,10 +102,10 @@ FOLLOWER = np.dtype(
         ("least", np.float64),  # certainty since it fell
         # What it has come to, in this hearing.
         ("commands", np.int64),
-        ("kind", np.int64, MOST_COMMANDS),
-        ("index", np.int64, MOST_COMMANDS),
-        ("value", np.float64, MOST_COMMANDS),
-        ("other", np.float64, MOST_COMMANDS),
+        ("kind", np.int64, MAX_COMMANDS),
+        ("index", np.int64, MAX_COMMANDS),
+        ("value", np.float64, MAX_COMMANDS),
+        ("other", np.float64, MAX_COMMANDS),
     ],
     align=True,
 )
@@ -132,7 +132,7 @@ def prepare_follower(f: Any, rate: float, transpose: float, correct: float) -> N
     f.transpose, f.correct, f.aim = transpose, correct, math.nan
     for key in range(KEYS):
         f.tuning[key] = key
-    f.noise_db, f.full_db = LEAST_DB, QUIETEST_FULL_DB
+    f.noise_db, f.full_db = MIN_GATE_DB, MIN_FULL_DB
     f.dynamics_db = f.string = math.nan
 
 
@@ -149,7 +149,7 @@ def decide(f: Any) -> None:
     """Decide what the last hearing comes to. Real time: safe."""
     f.commands = 0
     h = f.hearing
-    f.full_db = max(f.full_db - FORGOTTEN_DB, QUIETEST_FULL_DB)
+    f.full_db = max(f.full_db - FORGOTTEN_DB, MIN_FULL_DB)
     if f.is_open == 0:
         await_note(f, h)
     elif h.certainty < UNSURE or h.level_db < gate_db(f) - CLOSES_DB:
@@ -165,7 +165,7 @@ def decide(f: Any) -> None:
 @compiled_exactly
 def gate_db(f: Any) -> float:
     """The level at which a note begins."""
-    return float(max(f.noise_db + OVER_NOISE_DB, LEAST_DB))
+    return float(max(f.noise_db + OVER_NOISE_DB, MIN_GATE_DB))
 
 
 @compiled_exactly

@@ -18,7 +18,7 @@ from yehu_server.core.player.ear import EAR_SAMPLES, product, remember
 
 Array = Any
 
-LOWEST_HZ, HIGHEST_HZ = 70.0, 2100.0
+MIN_HZ, MAX_HZ = 70.0, 2100.0
 THINNED_HZ = 11000.0  # the least rate at which it is heard, where the sound has so much
 SPAN_S = 0.02  # of the sound that is compared with itself
 HOP_S = 0.005
@@ -32,9 +32,9 @@ STEADY_HZ = 40.0  # of the high-pass, for what is steady
 # Loudness is that of what is above this: roughly as A-weighting has it for a voice.
 LOUDNESS_HZ, LOUDNESS_S = 400.0, 0.012
 SILENT = 1e-12  # power: -120 dB of full scale
-LOUDEST = 4.0  # of full scale: what is beyond is no voice, and would deafen for long
+MAX_AMPLITUDE = 4.0  # of full scale: what is beyond is no voice, and would deafen for long
 A4_HZ = 440.0
-MOST_LAGS = 2 + math.ceil(2.0 * THINNED_HZ / LOWEST_HZ)
+MAX_LAGS = 2 + math.ceil(2.0 * THINNED_HZ / MIN_HZ)
 
 HEARING = np.dtype(
     [
@@ -54,7 +54,7 @@ HEARING = np.dtype(
         ("keep_below", np.float64),
         ("keep_power", np.float64),
         ("sound", np.float64, 2 * EAR_SAMPLES),
-        ("likeness", np.float64, MOST_LAGS),  # by lag
+        ("likeness", np.float64, MAX_LAGS),  # by lag
         ("expected", np.float64),  # fractional MIDI note: the pitch of before; NaN for none
         # What is heard: fractional MIDI note; up to 1; dB of full scale.
         ("pitch", np.float64),
@@ -74,7 +74,7 @@ def prepare_hearing(h: Any, rate: float) -> None:
     h.step = max(1, int(rate / THINNED_HZ))
     h.rate = thinned = rate / h.step
     h.hop, h.span = int(HOP_S * thinned), int(SPAN_S * thinned)
-    h.lags = min(math.ceil(thinned / LOWEST_HZ), MOST_LAGS - 2)
+    h.lags = min(math.ceil(thinned / MIN_HZ), MAX_LAGS - 2)
     angle = 2.0 * math.pi * min(CUTOFF_HZ, OF_RATE * thinned) / rate
     for section in range(2):
         set_lowpass(h.lowpass[section], angle, BUTTERWORTH[section])
@@ -96,7 +96,7 @@ def set_lowpass(b: Array, angle: float, q: float) -> None:
 @compiled_exactly
 def take(h: Any, sample: float) -> bool:
     """Take a sample of the sound; return whether something new is heard. Real time: safe."""
-    passed = min(max(sample, -LOUDEST), LOUDEST) if math.isfinite(sample) else 0.0
+    passed = min(max(sample, -MAX_AMPLITUDE), MAX_AMPLITUDE) if math.isfinite(sample) else 0.0
     for section in range(2):
         b, z = h.lowpass[section], h.passed[section]
         out = b[0] * passed + z[0]
@@ -127,7 +127,7 @@ def hear(h: Any) -> None:
     end = EAR_SAMPLES + (h.heard & (EAR_SAMPLES - 1))
     compare(h.likeness, h.sound, end, h.span, h.lags)
     expected = h.rate / (A4_HZ * exp2((h.expected - 69.0) / 12.0))
-    lag = first_peak(h.likeness, h.lags, int(h.rate / HIGHEST_HZ), expected)
+    lag = first_peak(h.likeness, h.lags, int(h.rate / MAX_HZ), expected)
     h.certainty = min(height_at(h.likeness, lag), 1.0) if lag > 0 else 0.0
     if lag == 0:
         return

@@ -25,8 +25,8 @@ from yehu_server.core.physics.layout import MAX_FINGERS, REFINED, new_record
 from yehu_server.core.physics.time_loop import kernel_of
 from yehu_server.core.player.commands import COMMAND, RAMP
 from yehu_server.core.player.record import end_all, prepare_player
-from yehu_server.core.stage.record import STAGE, prepare_stage, rest_stage
-from yehu_server.core.stage.seat import prepare_seat, rest_seat
+from yehu_server.core.stage.record import STAGE, clear_stage, prepare_stage
+from yehu_server.core.stage.seat import clear_seat, prepare_seat
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT, TABLE, find
 
@@ -112,7 +112,7 @@ class Instrument:
         prepare_output(rig["output"], self.rate)
         prepare_seat(rig["seat"][0], self.rate, spec.body)
         if self._stage is not None:
-            rest_stage(self._stage[0])
+            clear_stage(self._stage[0])
         mail = rig["mail"]
         kept = mail["budget"].copy(), mail["reporting"].copy(), mail["delay"].copy()
         mail[:] = np.zeros(1, mail.dtype)
@@ -308,9 +308,9 @@ class Instrument:
         refined.come_to_rest(rig["refined"][0])
         settle(rig["controls"][0])
         rest_output(rig["output"])
-        rest_seat(rig["seat"][0])
+        clear_seat(rig["seat"][0])
         if self._stage is not None:
-            rest_stage(self._stage[0])
+            clear_stage(self._stage[0])
 
     def disable_pressure_correction(self) -> None:
         """Disable the pressure correction until the next reset."""

@@ -68,7 +68,7 @@ def absorb(row: Array, b_0: Array, b_1: Array, a_1: Array, state: Array, frames:
 
 
 @compiled_exactly_apart
-def hear(row: Array, gain: Array, heard: Array, frames: int) -> None:
+def read_lines(row: Array, gain: Array, heard: Array, frames: int) -> None:
     """Write what both ears hear of the lines: the left the even ones, the right the odd ones."""
     for n in range(np.uint64(frames)):
         for ear in range(2):

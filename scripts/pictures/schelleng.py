@@ -32,8 +32,8 @@ from yehu_server.core.player.bowing import (
     LIGHT,
     MIN_PRESS,
     TOP_SPEED,
+    bow_pressure_for,
     bowing_value,
-    share,
 )
 from yehu_server.params.table import find
 from yehu_server.playing.bowing_tables import shipped_bowing_table
@@ -73,7 +73,7 @@ class Player:
         """The force (N) that the player's assist sets for a value of ``/playing/pressure``."""
         fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
         flautando, light, firm = map(self.bowing_value, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
-        usual = share(flautando, light, firm, command, self.string)
+        usual = bow_pressure_for(flautando, light, firm, command, self.string)
         highest = speed * upper_limit(self.impedance, self.grip, 1.0, beta)  # it goes as the speed
         return (usual + fast) * highest
 
@@ -104,9 +104,9 @@ def draw(axes: Any, found: Result, x: str, at: dict[str, int]) -> None:
     axes.set(xlabel=LABELS[x], ylabel="")
     shares = np.bincount(cells.astype(int).ravel(), minlength=len(found.regimes)) / cells.size
     words = [
-        f"{name} {100 * share:.0f}"
-        for name, share in zip(found.regimes, shares, strict=False)
-        if share
+        f"{name} {100 * part:.0f}"
+        for name, part in zip(found.regimes, shares, strict=False)
+        if part
     ]
     print(f"{axes.get_title():16} per cent: {', '.join(words)}")
 

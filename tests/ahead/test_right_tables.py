@@ -11,7 +11,7 @@ from yehu_server.ahead.table_checks import FIELDS
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi import tables as layout
-from yehu_server.core.midi.tables import KEYS, MAX_BINDS, MAX_POINTS, TABLES
+from yehu_server.core.midi.tables import KEY_COUNT, MAX_BINDS, MAX_POINTS, TABLES
 from yehu_server.core.player.parameter_indices import INDEX, PARAMETER_COUNT
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
@@ -100,7 +100,7 @@ WRONG = [
     ("start_value", 0, 1.5),
     ("usual", INDEX["/playing/speed"], SPEED.hi + 1.0),
     ("usual", INDEX["/playing/volume"], 1e-300),  # something is divided by it
-    ("pitch", KEYS - 1, 1e308),
+    ("pitch", KEY_COUNT - 1, 1e308),
     ("policy", 0, 3),
     ("received", 0, 1 << 16),
     ("received", 0, -2),

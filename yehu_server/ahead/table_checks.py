@@ -14,12 +14,12 @@ import numpy as np
 
 from yehu_server.compile.jit import native
 from yehu_server.compile.memory import WORD, carray
-from yehu_server.core.midi.record import IN_PORT
+from yehu_server.core.midi.record import CHANNELS_PER_PORT
 from yehu_server.core.midi.tables import (
     BEND,
     CONTROL,
     EXPONENTIAL,
-    KEYS,
+    KEY_COUNT,
     MAX_BINDS,
     MAX_POINTS,
     NOTE,
@@ -49,13 +49,13 @@ FIELDS = {
     "first_point": (WHOLE, 0, MAX_POINTS),
     "points": (WHOLE, 0, MAX_POINTS),
     "smoothing_ms": (ANY, 0, MOST),
-    "channels": (WHOLE, 0, (1 << IN_PORT) - 1),
+    "channels": (WHOLE, 0, (1 << CHANNELS_PER_PORT) - 1),
     "input_lo": (ANY, -1e307, 1e307),
     "input_hi": (ANY, -1e307, 1e307),
     "same": (ANY, -1e307, 1e307),
     "x": (ANY, 0, 1),
     "y": (ANY, 0, 1),
-    "first_switch": (WHOLE_OR_NONE, 0, KEYS - 1),
+    "first_switch": (WHOLE_OR_NONE, 0, KEY_COUNT - 1),
     "starts": (WHOLE, 0, PARAMETER_COUNT),
     "start_row": (WHOLE, 0, PARAMETER_COUNT - 1),
     "start_value": (ANY, -MOST, MOST),
@@ -64,7 +64,7 @@ FIELDS = {
     "policy": (WHOLE, 0, SKIP),
     "lowest": (ANY, -MOST, MOST),
     "highest": (ANY, -MOST, MOST),
-    "received": (WHOLE, -1, (1 << IN_PORT) - 1),
+    "received": (WHOLE, -1, (1 << CHANNELS_PER_PORT) - 1),
     "has_program": (WHOLE, 0, 1),
     "program_row": (WHOLE_OR_NONE, 0, PARAMETER_COUNT - 1),
     "program_value": (ANY, -MOST, MOST),
@@ -119,7 +119,7 @@ def check_binds(t: Tables) -> int:
     """Return whether sources and targets of binds are right, once each field is."""
     for n in range(int(t.binds)):
         source, index = int(t.source[n]), int(t.target[n])
-        is_change = source < KEYS or PAIR <= source < PAIR + PAIRS
+        is_change = source < KEY_COUNT or PAIR <= source < PAIR + PAIRS
         is_other = BEND <= source <= NOTE or NRPN <= source < NRPN + NRPNS or source >= CONTROL
         first = 0
         while int(t.source[first]) != source:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.scores.phrases import phrases_of
 from yehu_server.scores.score import Score, ScoreNote, notes_of
 
@@ -35,7 +35,9 @@ def midi_delays(score: Score, tune: Score) -> Delays:
 
     `tune` has the notes of the part that leads.
     """
-    notes, leading = ([n for n in notes_of(s) if n.channel != PERCUSSION] for s in (score, tune))
+    notes, leading = (
+        [n for n in notes_of(s) if n.channel != PERCUSSION_CHANNEL] for s in (score, tune)
+    )
     return delays_of(leading) if is_in_time(notes) else ()
 
 

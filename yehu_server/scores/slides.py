@@ -16,7 +16,7 @@ from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
-from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.physics.elementary import exp
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.gestures import BEARS_SLIDE, STEEP
@@ -113,7 +113,7 @@ def _slides(
     score: Score, amount: float, playing: PlayingOptions, within: NoteRange
 ) -> Iterator[Slide]:
     """The slides over leaps that bow and fingers are free for."""
-    notes = [note for note in notes_of(score) if note.channel != PERCUSSION]
+    notes = [note for note in notes_of(score) if note.channel != PERCUSSION_CHANNEL]
     states = _states(score, playing, amount)
     for note, after in pairwise(notes):
         is_one = note.channel == after.channel and note.ends >= 0

@@ -68,7 +68,7 @@ def test_what_one_hand_does_goes_together(drifts):
 def test_without_variation_they_are_still():
     playing = Playing(variation=0.0)
     playing.on(74)
-    drift, length, width = playing.play(1.0, "drift", "sounding_drift", "vibrato_width")
+    drift, length, width = playing.play(1.0, "drift", "sounding_drift", "vibrato_depth_factor")
     assert (drift == 0.0).all()
     assert (length == 1.0).all()
     assert (width == 1.0).all()

@@ -6,7 +6,7 @@ from held_notes import HOP, RATE, Playing
 
 from yehu_server.core.controls.slots import SHARE
 from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
-from yehu_server.core.player.stroke import END, MIN_SPEED_FACTOR
+from yehu_server.core.player.stroke import END_FRACTION, MIN_SPEED_FACTOR
 
 LENGTH, SPEED = 0.7, 0.2
 
@@ -31,7 +31,7 @@ def test_a_bow_that_comes_to_its_end_turns_there():
     assert place.min() >= 0.0
     assert place.max() <= LENGTH
     between = np.diff(turns(speed))
-    assert between == pytest.approx((1.0 - 2.0 * END) * LENGTH / SPEED, rel=0.1)
+    assert between == pytest.approx((1.0 - 2.0 * END_FRACTION) * LENGTH / SPEED, rel=0.1)
 
 
 def test_a_change_within_a_note_is_a_dip_and_no_click():

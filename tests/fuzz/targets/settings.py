@@ -161,7 +161,7 @@ def check_controls(binds: tuple[Bind, ...]) -> None:
         for address in addresses:
             for argument in (0.0, 0.5, 1e30, -1e30):
                 leader.interpret(0, CONTROL, controls.number(address), argument, 0.0)
-                positions = leader.midi["fader"]
+                positions = leader.midi["control_position"]
                 assert ((positions >= 0.0) & (positions <= 1.0)).all(), address
 
 

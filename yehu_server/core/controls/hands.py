@@ -104,7 +104,7 @@ def advance_vibrato(c: Any) -> None:
     if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
         c.vibrato = 0.0
         return
-    c.vibrato += c.vibrato_pace * c.value[RATE] / c.second
+    c.vibrato += c.vibrato_rate_factor * c.value[RATE] / c.second
     c.vibrato -= math.floor(c.vibrato)
 
 
@@ -138,7 +138,7 @@ def vibrate(c: Any) -> float:
     advance_vibrato(c)
     if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
         return 0.0
-    return float(c.vibrato_width * vibrato_at(c, c.vibrato))
+    return float(c.vibrato_depth_factor * vibrato_at(c, c.vibrato))
 
 
 @compiled

@@ -68,8 +68,11 @@ CONTROLS = np.dtype(
         ("finger_up", np.int64, MAX_FINGERS),  # frames since each finger was lifted
         ("second", np.float64),  # in frames: the sample rate
         ("fade", np.int64),  # length of a fade to silence (frames)
-        ("vibrato_pace", np.float64),  # of this turn of the vibrato: factors on rate and depth
-        ("vibrato_width", np.float64),
+        (
+            "vibrato_rate_factor",
+            np.float64,
+        ),  # of this cycle of the vibrato
+        ("vibrato_depth_factor", np.float64),
         ("vibrato", np.float64),  # phases of vibrato and tremolo (turns)
         ("tremolo", np.float64),
         ("follow", np.float64),
@@ -141,6 +144,6 @@ def steady(controls: Any) -> None:
     """Let nothing drift or swing any more in a record of dtype CONTROLS, in place."""
     controls["tremolo"] = FORWARD
     controls["vibrato"], controls["place"] = 0.0, 0.0
-    controls["vibrato_pace"] = controls["vibrato_width"] = 1.0
+    controls["vibrato_rate_factor"] = controls["vibrato_depth_factor"] = 1.0
     controls["drift"], controls["drift_slope"], controls["drifting"] = 0.0, 0.0, 0
     controls["sounding_drift"] = controls["place_drift"] = 1.0

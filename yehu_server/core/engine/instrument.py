@@ -16,7 +16,7 @@ from yehu_server.core.engine.output import prepare_output, rest_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.telemetry import METERS
-from yehu_server.core.midi.record import IN_PORT, clear_held, prepare_midi
+from yehu_server.core.midi.record import CHANNELS_PER_PORT, clear_held, prepare_midi
 from yehu_server.core.midi.tables import plain_tables
 from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.bow import friction_bound
@@ -157,7 +157,7 @@ class Instrument:
         """
         midi = self._rig["midi"][0]
         self._rig["tables"][0, midi["tables"]] = tables[0]
-        midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
+        midi["lower"] = CHANNELS_PER_PORT - 1 if tables["mpe"][0] else 0
 
     @property
     def midi(self) -> Any:

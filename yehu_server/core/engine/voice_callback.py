@@ -15,7 +15,7 @@ from yehu_server.core.engine.atomics import pointer, record_at
 from yehu_server.core.engine.mailbox import SOUND_INPUT
 from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.processor import flush_denormals, monotonic_ns, restore_denormals
-from yehu_server.core.midi.tables import KEYS
+from yehu_server.core.midi.tables import KEY_COUNT
 from yehu_server.core.voice.note_detection import FOLLOWER, end, prepare_follower, update_note
 from yehu_server.core.voice.pitch_detection import push_sample
 
@@ -44,7 +44,7 @@ def voice_prepare(voice: Any, rate: float, transpose: float, correct: float) -> 
 def voice_tune(voice: Any, key: int, pitch: float) -> None:
     """Set the pitch of a key, 0 to 127, to which what is played is moved; NaN for none."""
     f = record_at(voice, 0, FOLLOWER)
-    if 0 <= key < KEYS:
+    if 0 <= key < KEY_COUNT:
         f.tuning[key] = pitch
 
 

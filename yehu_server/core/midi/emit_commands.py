@@ -97,7 +97,7 @@ def write(
 
 
 @compiled_exactly
-def express(m: Any, frame: int, index: int, value: float) -> None:
+def set_for_next_note(m: Any, frame: int, index: int, value: float) -> None:
     """Set a parameter for the note that begins next, or sounds again."""
     if m.is_held[index] != 0:
         return
@@ -122,7 +122,7 @@ def release_held(m: Any) -> None:
 def begin_key(
     m: Midi, frame: int, channel: int, key: float, pitch: float, velocity: float, strike_number: int
 ) -> None:
-    """Begin a note at a pitch within range; what was given to `express` before is for it."""
+    """Begin a note at a pitch within range; what `set_for_next_note` was given applies to it."""
     again = NONE
     before = find_key(m, channel, key)
     if before != NONE:
@@ -139,7 +139,7 @@ def begin_key(
 def end_listed(m: Midi, frame: int) -> None:
     """End the keys that are listed, all at once; of those still held the last sounds again.
 
-    What was given to `express` before is for that one.
+    What was given to `set_for_next_note` before is for that one.
     """
     if m.listed == 0:
         return
@@ -184,7 +184,7 @@ def record_command(m: Any, kind: int, index: int, value: float, other: float) ->
     elif kind == RELEASE:
         release_held(m)
     elif kind == STOP and value != 0.0:
-        hold_nothing(m)
+        clear_held_keys(m)
 
 
 @compiled_exactly
@@ -195,7 +195,7 @@ def stop_sound(m: Any, frame: int, is_panic: bool) -> None:
 
 
 @compiled_exactly
-def hold_nothing(m: Any) -> None:
+def clear_held_keys(m: Any) -> None:
     """Forget all held keys, whose sound ends."""
     m.held, m.sounding, m.listed, m.values = 0, NONE, 0, 0
     m.chord, m.is_divided = 0, 0

@@ -8,16 +8,16 @@ from typing import Annotated, Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.midi.tables import KEYS, MAX_BINDS
+from yehu_server.core.midi.tables import KEY_COUNT, MAX_BINDS
 from yehu_server.core.player.parameter_indices import INDEX, PARAMETER_COUNT
 from yehu_server.core.player.record import MAX_HELD
 from yehu_server.params.table import TABLE
 
-PORTS, IN_PORT = 16, 16
-CHANNELS = PORTS * IN_PORT
+PORT_COUNT, CHANNELS_PER_PORT = 16, 16
+CHANNEL_COUNT = PORT_COUNT * CHANNELS_PER_PORT
 MAX_PLAYERS = 16  # players of a section, at most
 MAX_CHORD = 32  # notes that a section divides
-ONSETS = 64  # that a section remembers
+MAX_ONSETS = 64  # that a section remembers
 MAX_COMMANDS = 8192  # that one event comes to
 NONE = -1
 SECTION = INDEX["/playing/section"]
@@ -53,22 +53,26 @@ MIDI = np.dtype(
         # positions are 0 to 1. By channel and first bind of the source; `taken` are those that
         # soft binds acted on. A key that is struck moves velocity, a write sets a target.
         ("moves", np.int64),
-        ("move_number", np.int64, (CHANNELS, MAX_BINDS)),
-        ("position", np.float64, (CHANNELS, MAX_BINDS)),
-        ("taken_number", np.int64, (CHANNELS, MAX_BINDS)),
-        ("taken_position", np.float64, (CHANNELS, MAX_BINDS)),
-        ("pressure_number", np.int64, (CHANNELS, KEYS)),  # aftertouch of each key
-        ("pressure", np.float64, (CHANNELS, KEYS)),
-        ("strike_number", np.int64, CHANNELS + 1),  # last note of a channel; at last, of all others
-        ("strike_velocity", np.float64, CHANNELS + 1),
-        ("strike_key", np.float64, CHANNELS + 1),
+        ("move_number", np.int64, (CHANNEL_COUNT, MAX_BINDS)),
+        ("position", np.float64, (CHANNEL_COUNT, MAX_BINDS)),
+        ("taken_number", np.int64, (CHANNEL_COUNT, MAX_BINDS)),
+        ("taken_position", np.float64, (CHANNEL_COUNT, MAX_BINDS)),
+        ("pressure_number", np.int64, (CHANNEL_COUNT, KEY_COUNT)),  # aftertouch of each key
+        ("pressure", np.float64, (CHANNEL_COUNT, KEY_COUNT)),
+        (
+            "strike_number",
+            np.int64,
+            CHANNEL_COUNT + 1,
+        ),  # last note of a channel; at last, of all others
+        ("strike_velocity", np.float64, CHANNEL_COUNT + 1),
+        ("strike_key", np.float64, CHANNEL_COUNT + 1),
         ("actives", np.int64),  # channels with moves
-        ("active", np.int64, CHANNELS),
-        ("is_active", np.int64, CHANNELS),
+        ("active", np.int64, CHANNEL_COUNT),
+        ("is_active", np.int64, CHANNEL_COUNT),
         # Named controls, by bind.
-        ("has_fader", np.int64, MAX_BINDS),
-        ("fader", np.float64, MAX_BINDS),
-        ("fader_wrote", np.float64, MAX_BINDS),  # value it last gave its target; NaN: none
+        ("has_control_position", np.int64, MAX_BINDS),
+        ("control_position", np.float64, MAX_BINDS),
+        ("control_wrote", np.float64, MAX_BINDS),  # value it last gave its target; NaN: none
         # Targets as set last, or as before their first move: indices in that order; the number of
         # that write.
         ("targets", np.int64),
@@ -76,22 +80,26 @@ MIDI = np.dtype(
         ("is_target", np.int64, PARAMETER_COUNT),
         ("set_number", np.int64, PARAMETER_COUNT),
         ("set_to", np.float64, PARAMETER_COUNT),
-        ("found_number", np.int64, PARAMETER_COUNT),  # of `values.find_values`: numbers and values
-        ("found_value", np.float64, PARAMETER_COUNT),
+        (
+            "resolved_number",
+            np.int64,
+            PARAMETER_COUNT,
+        ),  # of `values.find_values`: numbers and values
+        ("resolved_value", np.float64, PARAMETER_COUNT),
         # Channels.
-        ("bend_range", np.float64, CHANNELS),  # semitones; NaN: RPN 0 has not set it
-        ("coarse_tuning", np.float64, CHANNELS),  # semitones, by RPN 2
-        ("fine_tuning", np.float64, CHANNELS),  # semitones, by RPN 1
-        ("sustain", np.int64, CHANNELS),
-        ("is_registered", np.int64, CHANNELS),  # whether a registered parameter is selected
-        ("coarse", np.int64, CHANNELS),  # halves of its number, or NONE
-        ("fine", np.int64, CHANNELS),
-        ("bank", np.int64, CHANNELS),
-        ("bank_fine", np.int64, CHANNELS),
+        ("bend_range", np.float64, CHANNEL_COUNT),  # semitones; NaN: RPN 0 has not set it
+        ("coarse_tuning", np.float64, CHANNEL_COUNT),  # semitones, by RPN 2
+        ("fine_tuning", np.float64, CHANNEL_COUNT),  # semitones, by RPN 1
+        ("sustain", np.int64, CHANNEL_COUNT),
+        ("is_registered", np.int64, CHANNEL_COUNT),  # whether a registered parameter is selected
+        ("coarse", np.int64, CHANNEL_COUNT),  # halves of its number, or NONE
+        ("fine", np.int64, CHANNEL_COUNT),
+        ("bank", np.int64, CHANNEL_COUNT),
+        ("bank_fine", np.int64, CHANNEL_COUNT),
         # Ports: sizes of MPE zones, and whether a note was played.
-        ("lower", np.int64, PORTS),
-        ("upper", np.int64, PORTS),
-        ("is_keyboard", np.int64, PORTS),
+        ("lower", np.int64, PORT_COUNT),
+        ("upper", np.int64, PORT_COUNT),
+        ("is_keyboard", np.int64, PORT_COUNT),
         # Counts.
         ("messages", np.int64),
         ("malformed", np.int64),
@@ -99,8 +107,8 @@ MIDI = np.dtype(
         ("notes", np.int64),
         ("out_of_range", np.int64),
         ("percussion", np.int64),
-        ("notes_of", np.int64, CHANNELS + 1),
-        ("unknown_program", np.int64, KEYS),
+        ("notes_of", np.int64, CHANNEL_COUNT + 1),
+        ("unknown_program", np.int64, KEY_COUNT),
         # Who plays: instruments of the part, and how many of them play.
         ("rate", np.float64),
         ("players", np.int64),
@@ -134,12 +142,12 @@ MIDI = np.dtype(
         ("values_value", np.float64, PARAMETER_COUNT),
         # Onsets: see ``section_players``.
         ("stream", np.int64),  # of random numbers; 0: not begun
-        ("drawn", np.int64),
+        ("random_count", np.int64),
         ("share", np.float64, MAX_PLAYERS),
         ("error", np.float64, MAX_PLAYERS),
         ("onsets", np.int64),
-        ("onset_at", np.int64, ONSETS),
-        ("onset_late", np.int64, (ONSETS, MAX_PLAYERS)),
+        ("onset_at", np.int64, MAX_ONSETS),
+        ("onset_late", np.int64, (MAX_ONSETS, MAX_PLAYERS)),
         ("late", np.int64, MAX_PLAYERS),
         ("before", np.float64, MAX_PLAYERS),
         # Commands that the event comes to.
@@ -189,10 +197,10 @@ def prepare_midi(
     m["players"] = m["playing"] = players
     m["value"][SECTION] = players
     m["bend_range"] = np.nan
-    m["lower"] = IN_PORT - 1 if mpe else 0
+    m["lower"] = CHANNELS_PER_PORT - 1 if mpe else 0
     m["is_registered"] = 1
     m["coarse"] = m["fine"] = NONE
-    m["fader_wrote"] = np.nan
+    m["control_wrote"] = np.nan
     clear_held(m)
 
 

@@ -15,9 +15,9 @@ from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.params.table import TABLE
 
 MAX_BINDS, MAX_POINTS = 256, 2048
-KEYS = 128
-PROGRAMS = 128
-SLOTS = 3  # tables of a part: those in use, those that are next, those that are written
+KEY_COUNT = 128
+PROGRAM_COUNT = 128
+TABLE_SLOTS = 3  # tables of a part: those in use, those that are next, those that are written
 
 # Sources: a control change is its number, a pair of 14 bits PAIR + its coarse half, a
 # non-registered parameter NRPN + its number, a named control CONTROL + its number.
@@ -59,7 +59,7 @@ TABLES = np.dtype(
         ("usual", np.float64, PARAMETER_COUNT),
         # The tuning: pitches of keys, NaN for none; 1: each sounds its own number.
         ("is_equal", np.float64),
-        ("pitch", np.float64, KEYS),
+        ("pitch", np.float64, KEY_COUNT),
         # What happens to notes that the instrument does not have, and its lowest and highest.
         ("policy", np.float64),
         ("lowest", np.float64),
@@ -68,9 +68,9 @@ TABLES = np.dtype(
         ("received", np.float64),
         # Values of presets by program, in order: indices, and NaN for the end.
         ("has_programs", np.float64),
-        ("has_program", np.float64, PROGRAMS),
-        ("program_row", np.float64, (PROGRAMS, PARAMETER_COUNT)),
-        ("program_value", np.float64, (PROGRAMS, PARAMETER_COUNT)),
+        ("has_program", np.float64, PROGRAM_COUNT),
+        ("program_row", np.float64, (PROGRAM_COUNT, PARAMETER_COUNT)),
+        ("program_value", np.float64, (PROGRAM_COUNT, PARAMETER_COUNT)),
     ]
 )
 Tables = Annotated[Any, TABLES]

@@ -31,8 +31,8 @@ from yehu_server.core.player.held_keys import NOT_HELD, add_key, find_key, remov
 from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.left_hand import LIFTING_MS, side_of
 from yehu_server.core.player.ownership import (
-    USUAL_MS,
-    move,
+    DEFAULT_RAMP_MS,
+    move_parameter,
     take_all_back,
     take_back,
 )
@@ -149,7 +149,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     is_slur = is_legato and not at_once
     if not at_once:
         p.hurry = 0.0 if is_legato else hurry_of(p, c)
-    p.pace = 1.0
+    p.stroke_speed_factor = 1.0
     begin_gesture(p, c, is_slur)
     turns = plan_stroke(p, c, requested_speed(p), is_legato)
     slide_ms = 0.0 if at_once and not is_touched(p) else slide_into_note_ms(p, c)
@@ -182,7 +182,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     set_level(p, c)
     set_bow_pressure(p, c)
     if not is_legato or crosses_strings:
-        right_hand.bite(p, c)
+        right_hand.set_attack_pressure(p, c)
     if is_plucked(p):
         right_hand.pluck(p, c, side_of(p))
     else:
@@ -274,7 +274,7 @@ def is_touched(p: Any) -> bool:
 @compiled_exactly
 def set_assist(p: Any, c: Any) -> None:
     """Let the bow's force follow its speed as far as is asked for."""
-    move(p, c, BOW_ASSIST, p.value[ASSIST], USUAL_MS)
+    move_parameter(p, c, BOW_ASSIST, p.value[ASSIST], DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -282,7 +282,7 @@ def set_level(p: Any, c: Any) -> None:
     """Set the output's level."""
     level = (p.value[VOLUME] * p.value[EXPRESSION]) ** 2
     level *= p.value[DYNAMICS] * math.sqrt(p.value[DYNAMICS])  # to the DYNAMICS_EXPONENT
-    move(p, c, OUTPUT_LEVEL, level, USUAL_MS)
+    move_parameter(p, c, OUTPUT_LEVEL, level, DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -293,7 +293,7 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 
 
 @compiled_exactly
-def draw_on(p: Any, c: Any) -> None:
+def update_bow(p: Any, c: Any) -> None:
     """Draw as parameters now say, but let a move of the gesture take its time."""
     left_ms = 1e3 * (p.gesture.move_ends - (c.frame - p.note_began) / p.rate)
     draw(p, c, max(left_ms, SMOOTH_MS[BOW_SPEED]))
@@ -303,7 +303,7 @@ def draw_on(p: Any, c: Any) -> None:
 def set_bow_pressure(p: Any, c: Any) -> None:
     """Set the bow's pressure and position, and the colour that they make."""
     right_hand.set_bow_pressure(p, c, note_pitch(p), p.sounding >= 0)
-    even_out(p, c)
+    set_loudness_balance(p, c)
 
 
 @compiled_exactly
@@ -316,14 +316,14 @@ def min_press(p: Any, string: int) -> float:
 
 
 @compiled_exactly
-def even_out(p: Any, c: Any) -> None:
+def set_loudness_balance(p: Any, c: Any) -> None:
     """Set colour, and the gain that evens out the loudness of notes, as the bow is drawn."""
     if p.sounding >= 0 or p.is_direct != 0:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
         speed, effort = requested_speed(p), requested_speed(p) * p.value[PRESSURE]
         if p.is_direct != 0:
             speed, effort = p.speed, p.effort
-        velocity.even_out(p, c, pitch, speed, effort)
+        velocity.set_loudness_balance(p, c, pitch, speed, effort)
 
 
 @compiled_exactly
@@ -349,16 +349,16 @@ def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
     pitch, before, was = note_pitch(p), p.string, p.finger_pitch
     p.finger_pitch = pitch
     if is_touched(p):
-        even_out(p, c)
+        set_loudness_balance(p, c)
         return
     string, position = stay(p, pitch, slide_ms == STEP_MS, requested_speed(p))
     left_hand.stop(p, c, string, position, min_press(p, string), slide_ms)
     if string != before:
         begin_tuning(p, pitch)
-    if string != before or not right_hand.is_bowed_alike(p, pitch):
+    if string != before or not right_hand.has_same_bowing(p, pitch):
         set_bow_pressure(p, c)
-        draw_on(p, c)
+        update_bow(p, c)
     if pitch != was:
         p.first_error, p.jumps = math.nan, 0
         pause_listening(p, c, max(slide_ms, 0.0))
-    even_out(p, c)
+    set_loudness_balance(p, c)

@@ -19,7 +19,7 @@ from yehu_server.core.player.parameter_indices import (
 )
 
 # A sum of so many uniform numbers is all but normal.
-ADDED = 12
+SUMMED_UNIFORMS = 12
 # Standard deviations at full variation. By ear.
 VARIED_FRACTION = 0.1  # of bow speed and pressure
 VARIED_CENTS = 6.0
@@ -29,8 +29,8 @@ VARIED_LANDING, MAX_LANDING = 0.8, 2.0  # of the time of a landing; and its larg
 @compiled_exactly
 def begin_sequence(p: Any, seed: int) -> None:
     """Begin the sequence of a seed."""
-    p.seed, p.drawn = seed, 0
-    p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.drawn = 0.0, 0.0, 0
+    p.seed, p.random_count = seed, 0
+    p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.random_count = 0.0, 0.0, 0
     p.drift_state.slow_deviate[:] = 0.0
 
 
@@ -39,7 +39,7 @@ def vary_next_note(p: Any) -> None:
     """Draw the deviates of a new note."""
     varied = p.value[VARIATION] * VARIED_FRACTION
     p.speed_variation = 1.0 + varied * deviate(p)
-    p.weight = 1.0 + varied * deviate(p)
+    p.pressure_variation = 1.0 + varied * deviate(p)
     p.detuned = deviate(p)
 
 
@@ -47,10 +47,10 @@ def vary_next_note(p: Any) -> None:
 def deviate(p: Any) -> float:
     """A number of mean 0 and variance 1; each of the uniform ones has a variance of 1/3."""
     total = 0.0
-    for _ in range(ADDED):
-        total += pseudorandom((p.seed << 32) + p.drawn)
-        p.drawn += 1
-    return total / math.sqrt(ADDED / 3.0)
+    for _ in range(SUMMED_UNIFORMS):
+        total += pseudorandom((p.seed << 32) + p.random_count)
+        p.random_count += 1
+    return total / math.sqrt(SUMMED_UNIFORMS / 3.0)
 
 
 @compiled_exactly

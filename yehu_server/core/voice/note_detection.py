@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.midi.tables import KEYS
+from yehu_server.core.midi.tables import KEY_COUNT
 from yehu_server.core.physics.elementary import each, exp, log, log10
 from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import YEHU, NoteRange
@@ -81,7 +81,7 @@ FOLLOWER = np.dtype(
         ("transpose", np.float64),  # semitones; NaN: by octaves, as the first note wants
         ("a4_offset", np.float64),  # how much 440 Hz is above the instrument's A4 (semitones)
         ("correct", np.float64),  # how far what is played is moved to the tuning: 0 to 1
-        ("tuning", np.float64, KEYS),  # pitches of its keys; NaN for a key without one
+        ("tuning", np.float64, KEY_COUNT),  # pitches of its keys; NaN for a key without one
         ("target_pitch", np.float64),  # the pitch of the tuning that it is moved to
         ("is_sounding", np.int64),  # whether a note sounds
         ("agreed_hops", np.int64),
@@ -131,7 +131,7 @@ def prepare_follower(f: Any, rate: float, transpose: float, correct: float) -> N
     prepare_pitch_detector(f.detector, rate)
     f.lowest, f.highest, f.on_inner, f.on_outer = OF_YEHU
     f.transpose, f.correct, f.target_pitch = transpose, correct, math.nan
-    for key in range(KEYS):
+    for key in range(KEY_COUNT):
         f.tuning[key] = key
     f.noise_db, f.full_db = MIN_GATE_DB, MIN_FULL_DB
     f.dynamics_db = f.string = math.nan
@@ -227,7 +227,7 @@ def played_pitch(f: Any, pitch: float) -> float:
 def nearest_of(tuning: Any, pitch: float) -> float:
     """The pitch of a tuning that is nearest to another; that itself where there is none."""
     nearest, least = pitch, math.inf
-    for key in range(KEYS):
+    for key in range(KEY_COUNT):
         if abs(tuning[key] - pitch) < least:
             nearest, least = float(tuning[key]), abs(tuning[key] - pitch)
     return nearest

@@ -68,7 +68,7 @@ def check_rate(rate: float) -> None:
 
 
 @compiled
-def _place(position: float, N: int, weights: Array, cubic: bool) -> int:
+def _write_weights(position: float, N: int, weights: Array, cubic: bool) -> int:
     l = int(position)
     l = max(1, min(l, N - 2))
     a = position - l
@@ -91,19 +91,19 @@ def _place(position: float, N: int, weights: Array, cubic: bool) -> int:
 
 
 @compiled
-def place_cubic(position: float, N: int, weights: Array) -> int:
+def cubic_weights(position: float, N: int, weights: Array) -> int:
     """Write the weights of a contact at `position` (in nodes, 1 to N-1); return its first node."""
-    return _place(position, N, weights, True)
+    return _write_weights(position, N, weights, True)
 
 
 @compiled
-def place_linear(position: float, N: int, weights: Array) -> int:
-    """As `place_cubic`, with linear interpolation between two nodes."""
-    return _place(position, N, weights, False)
+def linear_weights(position: float, N: int, weights: Array) -> int:
+    """As `cubic_weights`, with linear interpolation between two nodes."""
+    return _write_weights(position, N, weights, False)
 
 
 @compiled
-def read(u: Array, first: int, weights: Array) -> float:
+def interpolate(u: Array, first: int, weights: Array) -> float:
     """Return I u, the displacement at a contact (m)."""
     total = 0.0
     for j in range(STENCIL):

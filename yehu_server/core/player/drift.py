@@ -22,7 +22,7 @@ from yehu_server.core.controls.record import (
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
-from yehu_server.core.physics.elementary import cos, each, exp, pseudorandom
+from yehu_server.core.physics.elementary import cos, elementwise, exp, pseudorandom
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.parameter_indices import (
     BOW_FORCE,
@@ -53,7 +53,7 @@ SMOOTHING_PER_HOP = 0.15  # of the way to the factors of the next cycle
 
 TIME_CONSTANTS_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
 STAGES = 4
-POLES = each(exp, -HOP_S / TIME_CONSTANTS_S)
+POLES = elementwise(exp, -HOP_S / TIME_CONSTANTS_S)
 # Uniform numbers in -1..1 have a variance of 1/3; the sums have one of 1.
 NOISE_GAINS = np.sqrt(3.0 * (1.0 - POLES**2) / STAGES)
 TREMOR_HZ, WIDTH_HZ = 10.0, 3.0

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics.elementary import decibels, each, exp2
+from yehu_server.core.physics.elementary import decibels, elementwise, exp2
 from yehu_server.core.physics.quantities import Body
 from yehu_server.core.physics.radiation import magnitude, response_parts
 from yehu_server.core.physics.shelf import shelf_gain
@@ -52,7 +52,9 @@ def vibrato_table(
     """
     margin = DEFAULT_DEPTH_CENTS + STRAY + MAX_OFF_CENTS
     pitches = open_notes[0] + 0.01 * np.arange(-margin, 50 * (STEPS - 1) + margin + 1)
-    frequency_hz = np.outer(a4 * each(exp2, (pitches - 69.0) / 12.0), np.arange(1, HARMONICS + 1))
+    frequency_hz = np.outer(
+        a4 * elementwise(exp2, (pitches - 69.0) / 12.0), np.arange(1, HARMONICS + 1)
+    )
     heard = _plain(body, frequency_hz)
     table = np.empty((STEPS, 2))
     for row in range(STEPS):

@@ -14,7 +14,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.tables import KEY_COUNT
-from yehu_server.core.physics.elementary import each, exp, log, log10
+from yehu_server.core.physics.elementary import elementwise, exp, log, log10
 from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
@@ -59,9 +59,9 @@ MAX_COMMANDS = 8
 
 def dynamics_of(level_db: Any) -> Any:
     """The dynamics that are so many dB below full ones, as ``player`` plays them."""
-    dynamics = each(exp, np.linspace(log(MIN_DYNAMICS), 0.0, 400))
+    dynamics = elementwise(exp, np.linspace(log(MIN_DYNAMICS), 0.0, 400))
     speed = MIN_SPEED_FRACTION + (1.0 - MIN_SPEED_FRACTION) * dynamics
-    level = DYNAMICS_EXPONENT * each(log10, dynamics) + each(log10, speed)
+    level = DYNAMICS_EXPONENT * elementwise(log10, dynamics) + elementwise(log10, speed)
     return np.interp(level_db, 20.0 * level, dynamics)
 
 

@@ -20,7 +20,7 @@ from yehu_lab.plot.sweep_maps import draw_map, map_of
 from yehu_lab.sweeps.result import Result
 from yehu_lab.sweeps.running import sweep
 from yehu_lab.sweeps.study import study_of
-from yehu_server.core.controls.hands import FAST, FAST_SHARE
+from yehu_server.core.controls.kernel_controls import EXTRA_SHARE, EXTRA_SHARE_SPEED
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.schelleng import upper_limit
 from yehu_server.core.player.bowing import (
@@ -71,7 +71,7 @@ class Player:
 
     def force(self, speed: Array, beta: float, command: float) -> Array:
         """The force (N) that the player's assist sets for a value of ``/playing/pressure``."""
-        fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
+        fast = EXTRA_SHARE * np.minimum(1.0, (np.asarray(speed) / EXTRA_SHARE_SPEED) ** 2)
         flautando, light, firm = map(self.bowing_value, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
         usual = bow_pressure_for(flautando, light, firm, command, self.string)
         highest = speed * upper_limit(self.impedance, self.grip, 1.0, beta)  # it goes as the speed

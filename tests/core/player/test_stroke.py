@@ -13,7 +13,7 @@ LENGTH, SPEED = 0.7, 0.2
 
 def drawn(playing: Playing, seconds: float) -> tuple[np.ndarray, np.ndarray]:
     """The bow's speed (m/s) and the hair's place (m), every 5 ms."""
-    values, place = playing.play(seconds, "value", "place")
+    values, place = playing.play(seconds, "value", "bow_displacement")
     return values[:, SLOT_OF_SPEED], place
 
 

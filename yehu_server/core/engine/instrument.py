@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.controls.record import prepare_controls, settle
+from yehu_server.core.controls.record import jump_to_targets, prepare_controls
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine import native
 from yehu_server.core.engine.event_dispatch import interpret_events
@@ -306,7 +306,7 @@ class Instrument:
         rig = self._rig
         kernel.come_to_rest(rig["model"][0], rig["state"][0])
         refined.come_to_rest(rig["refined"][0])
-        settle(rig["controls"][0])
+        jump_to_targets(rig["controls"][0])
         rest_output(rig["output"])
         clear_seat(rig["seat"][0])
         if self._stage is not None:

@@ -287,7 +287,10 @@ def stored_energy(m: Model, t: Refined, next_: int, now: int) -> float:
 def record_points(
     m: Model, state: State, t: Refined, control: Array, before: float, row: Array
 ) -> float:
-    """Put torsion, hair and friction of all points into a row of the ledger, as ``energy.record_energy``."""
+    """Write torsion, hair and friction of all points to a row of the ledger.
+
+    As ``energy.record_energy`` does.
+    """
     s, c = state.motion, state.contacts
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     stored = stored_energy(m, t, next_, now)

@@ -30,9 +30,8 @@ from yehu_server.core.physics.records import Array, Contacts, Model, Refined, Wo
 from yehu_server.errors import ParameterError
 
 MAX_OF_NYQUIST = 0.9  # of half the sample rate: modes above are left out
-NEGLIGIBLE_M = (
-    1e-30  # m; numbers near the least that there are would cost a hundred times the others
-)
+# Denormal numbers would cost a hundred times the others.
+NEGLIGIBLE_M = 1e-30
 
 
 def prepare_torsion(refined: Any, quantities: Quantities, k: float) -> None:

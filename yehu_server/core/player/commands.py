@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
-from yehu_server.core.controls.ramps import take
+from yehu_server.core.controls.ramps import start_ramp
 from yehu_server.core.controls.record import Controls
 from yehu_server.core.player import direct_bowing, left_hand, notes, vibrato
 from yehu_server.core.player.ownership import invalidate_sent, ramp_to, release, write_directly
@@ -91,7 +91,7 @@ def apply(
     if not (math.isfinite(value) and math.isfinite(other)):
         return
     if kind == RAMP:
-        take(c, index, value, int(clamp(other, 0.0, MAX_RAMP)))
+        start_ramp(c, index, value, int(clamp(other, 0.0, MAX_RAMP)))
     elif kind == BEGIN:
         notes.begin(p, c, frame, index, value, clamp_pitch(p, other))
     elif kind == END:

@@ -16,9 +16,9 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.record import (
     CENTS_DRIFT,
-    DRIFTS,
+    DRIFT_COUNT,
     FORCE_DRIFT,
-    PLACE_DRIFT,
+    POSITION_DRIFT,
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
@@ -76,7 +76,7 @@ SEQUENCE_OFFSET = 1 << 31  # of the seed's numbers; those before are the notes' 
 
 DRIFT_STATE = np.dtype(
     [
-        ("slow", np.float64, (DRIFTS, STAGES)),  # the sequences of each drift
+        ("slow", np.float64, (DRIFT_COUNT, STAGES)),  # the sequences of each drift
         ("tremor", np.float64, (HANDS, 2)),  # of each hand, now and one hop ago
         ("cents", np.float64, DETECTION_DELAY_HOPS + 1),  # of the finger, now and at the last hops
         ("phase", np.float64),  # of the vibrato, one hop ago (turns)
@@ -108,11 +108,11 @@ def advance_drift(p: Any, c: Any) -> None:
         now, before = u.tremor[hand, 0], u.tremor[hand, 1]
         u.tremor[hand, 0] = TREMOR_A_1 * now - TREMOR_A_2 * before + TREMOR_NOISE * next_random(p)
         u.tremor[hand, 1] = now
-    for i in range(DRIFTS):
+    for i in range(DRIFT_COUNT):
         for k in range(STAGES):
             u.slow[i, k] = POLES[k] * u.slow[i, k] + NOISE_GAINS[k] * next_random(p)
     c.drifting = 0
-    for i in range(DRIFTS):
+    for i in range(DRIFT_COUNT):
         drift = sum_of(u.slow[i])
         if i != LEADING[i]:
             drift = (
@@ -126,7 +126,7 @@ def advance_drift(p: Any, c: Any) -> None:
             c.drift[i] = c.drift_slope[i] = 0.0
         c.drifting |= 1 if c.drift[i] != 0.0 or c.drift_slope[i] != 0.0 else 0
     if c.drifting == 0:
-        c.sounding_drift = c.place_drift = 1.0
+        c.sounding_drift = c.position_drift = 1.0
     for k in range(DETECTION_DELAY_HOPS, 0, -1):
         u.cents[k] = u.cents[k - 1]
     u.cents[0] = c.drift[CENTS_DRIFT]
@@ -183,7 +183,7 @@ def is_playing(p: Any, drift: int) -> bool:
     index = BOW_SPEED
     if drift == FORCE_DRIFT:
         index = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.is_held[BOW_FORCE] == 0 else BOW_FORCE
-    elif drift == PLACE_DRIFT:
+    elif drift == POSITION_DRIFT:
         index = BOW_POSITION
     elif drift == CENTS_DRIFT:
         index = FINGER_POSITION[p.finger]

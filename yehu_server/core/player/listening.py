@@ -8,7 +8,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
-from yehu_server.core.controls.hands import vibrato_at
+from yehu_server.core.controls.kernel_controls import vibrato_at
 from yehu_server.core.controls.record import Controls
 from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
 from yehu_server.core.physics.elementary import exp2

@@ -9,7 +9,7 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.ramps import take
+from yehu_server.core.controls.ramps import start_ramp
 from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import left_hand, right_hand, velocity, vibrato
 from yehu_server.core.player.bowing import MIN_PRESS, bowing_value
@@ -75,9 +75,8 @@ BEND_RAMP_MS = find("/playing/bend").smooth_ms
 # The level is this power of dynamics: together with the slower bow, dynamics 0.5 is some 12 dB
 # below 1, and 0.1 some 35 dB. By ear.
 DYNAMICS_EXPONENT = 1.5
-MAX_SEMITONES_FROM_KEY = (
-    0.5  # semitones, of a pitch from a key: what bends farther slides by itself
-)
+# A pitch bent farther than this from its key is not given a slide of its own.
+MAX_SEMITONES_FROM_KEY = 0.5
 SETTLING_MS = 35.0  # in which a string comes to its pitch, and what is heard is all of it
 
 
@@ -138,7 +137,7 @@ def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
     right_hand.lift(p, c, LIFTING_MS)
     left_hand.lift_all(p, c)
     p.finger_pitch = p.open_note[0]
-    take(c, SILENCE, 0.0, 0)
+    start_ramp(c, SILENCE, 0.0, 0)
 
 
 @compiled_exactly

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.ramps import take
+from yehu_server.core.controls.ramps import start_ramp
 from yehu_server.core.player.parameter_indices import (
     BOW_ASSIST,
     BOW_FORCE,
@@ -29,7 +29,7 @@ DEFAULT_RAMP_MS = -1.0  # a sentinel: the ramp time of the parameter itself
 def ramp_to(p: Any, c: Any, index: int, value: float, ramp_ms: float) -> None:
     """Move a parameter of the engine, whoever owns it; in `ramp_ms`, or DEFAULT_RAMP_MS."""
     ramp_ms = SMOOTH_MS[index] if ramp_ms < 0.0 else ramp_ms
-    take(c, SLOT_OF[index], value, int(np.rint(ramp_ms * 1e-3 * p.rate)))
+    start_ramp(c, SLOT_OF[index], value, int(np.rint(ramp_ms * 1e-3 * p.rate)))
 
 
 @compiled_exactly

@@ -25,7 +25,7 @@ CHANGE_MS = 28.0  # time in which a bow changes its direction within a note
 def hair_left(p: Any, c: Any, direction: float) -> float:
     """Hair (m) that is left for a stroke in a direction."""
     length = p.value[BOW_LENGTH]
-    left = length - c.place if direction > 0.0 else c.place
+    left = length - c.bow_displacement if direction > 0.0 else c.bow_displacement
     return float(left - END_FRACTION * length)
 
 
@@ -46,7 +46,7 @@ def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
     p.stroke_speed_factor = 1.0
     if length == 0.0:
         return bool(p.direction != before)
-    c.place = min(max(c.place, 0.0), length)
+    c.bow_displacement = min(max(c.bow_displacement, 0.0), length)
     is_known = p.value[NOTE_LENGTH] > 0.0
     needed = speed * (p.value[NOTE_LENGTH] if is_known else USUAL_S)
     if not is_slur and (p.side == 0.0 or command != 0.0):
@@ -57,7 +57,7 @@ def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
         )
         behind = length - hair_left(p, c, p.direction) - END_FRACTION * length
         if command != 0.0 or hair_left(p, c, p.direction) < needed or behind < begin * length:
-            c.place = length * (begin if p.direction > 0.0 else 1.0 - begin)
+            c.bow_displacement = length * (begin if p.direction > 0.0 else 1.0 - begin)
     left, other = hair_left(p, c, p.direction), hair_left(p, c, -p.direction)
     if left < MIN_SPEED_FACTOR * needed and left < other and command == 0.0:
         p.direction, left = -p.direction, other

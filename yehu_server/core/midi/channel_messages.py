@@ -70,7 +70,7 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
 
 @compiled_exactly
 def count_malformed(m: Any, index: int) -> None:
-    """Count what is no message, and keep it for `status` to report."""
+    """Count an invalid message, and store it for `status` to report."""
     m.malformed += 1
     m.malformed_last = index
 

@@ -18,7 +18,7 @@ CHANNEL_COUNT = PORT_COUNT * CHANNELS_PER_PORT
 MAX_PLAYERS = 16  # players of a section, at most
 MAX_CHORD = 32  # notes that a section divides
 MAX_ONSETS = 64  # that a section remembers
-MAX_COMMANDS = 8192  # that one event comes to
+MAX_COMMANDS = 8192  # that one event produces
 NONE = -1
 SECTION = INDEX["/playing/section"]
 
@@ -150,7 +150,7 @@ MIDI = np.dtype(
         ("onset_late", np.int64, (MAX_ONSETS, MAX_PLAYERS)),
         ("late", np.int64, MAX_PLAYERS),
         ("before", np.float64, MAX_PLAYERS),
-        # Commands that the event comes to.
+        # Commands that the event produces.
         ("commands", np.int64),
         ("lost", np.int64),  # of those that there was no room for
         ("out_frame", np.int64, MAX_COMMANDS),

@@ -111,7 +111,7 @@ def add_value(m: Any, index: int, value: float) -> None:
 
 @compiled_exactly
 def set_playing_count(m: Any, players: int, frame: int) -> None:
-    """Let so many play; the others end their notes and rest."""
+    """Let a number of players play; the others end their notes and rest."""
     for who in range(players, m.players):
         at = act(m, who, frame, 0)
         for _ in range(m.holds[who]):

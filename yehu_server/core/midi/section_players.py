@@ -80,7 +80,7 @@ ERROR_MS, MAX_ERROR_MS = 36.0, 14.0
 # of its own, within these factors. By ear.
 GAIN_LO, GAIN_HI = 0.6, 1.4
 MAX_LATE_FRACTION = 0.5  # of the time since the last onset; else short notes would be lost
-SUMMED_UNIFORMS = 12  # a sum of so many uniform numbers is all but normal
+SUMMED_UNIFORMS = 12  # a sum of this many uniform numbers is nearly normal
 FIRST_STREAM = 1 << 20  # of random numbers; those of the players' variation come before
 
 

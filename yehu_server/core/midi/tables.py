@@ -64,7 +64,7 @@ TABLES = np.dtype(
         ("policy", np.float64),
         ("lowest", np.float64),
         ("highest", np.float64),
-        # A bit for each channel that is received; -1: all, but for percussion.
+        # A bit for each channel that is received; -1: all except percussion.
         ("received", np.float64),
         # Values of presets by program, in order: indices, and NaN for the end.
         ("has_programs", np.float64),

@@ -130,7 +130,7 @@ def solve_elastic(
 ) -> tuple[bool, bool, float, float, float, float]:
     """Solve friction as if bristles did not slip (chi = 0).
 
-    That is linear but for epsilon_1(v_r), which takes one more step where it decreases slightly.
+    That is linear except for epsilon_1(v_r), which takes one more step where it decreases slightly.
 
     Returns
     -------

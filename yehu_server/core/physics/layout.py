@@ -4,7 +4,7 @@ One record each, with room for the largest grid, so that every sample rate runs 
 same compiled code and a single address reaches everything. MODEL is written once
 per sample rate; STATE is what a step changes: ``motion`` is the state of the instrument,
 ``contacts`` is where bow and fingers touch the strings, ``work`` holds the intermediate results of
-one step. An instrument at rest is all zeros but for the fingers' heights. docs/notation.md
+one step. An instrument at rest is all zeros except for the fingers' heights. docs/notation.md
 has each field's symbol, unit and equation.
 
 Indices are unsigned: a negative one costs a comparison at every use, and keeps loops from
@@ -301,7 +301,7 @@ CONTROLS_PER_FINGER = 2
 
 
 def control_columns(fingers: int) -> int:
-    """Columns of the control array of an instrument with so many fingers."""
+    """Columns of the control array of an instrument with a number of fingers."""
     return FINGER_CONTROLS + CONTROLS_PER_FINGER * fingers
 
 
@@ -321,7 +321,7 @@ PROBES_PER_FINGER = 3
 
 
 def probe_columns(fingers: int) -> int:
-    """Columns of the probe array of an instrument with so many fingers."""
+    """Columns of the probe array of an instrument with a number of fingers."""
     return FINGER_PROBES + PROBES_PER_FINGER * fingers
 
 

@@ -55,7 +55,7 @@ def heaviest(p: Any) -> float:
 
 @compiled_exactly
 def fault_of(p: Any) -> int:
-    """What is wrong with what is heard.
+    """Which fault the string has, as it is heard.
 
     Without a period and with many slips the bow may be either; then the command decides.
     """

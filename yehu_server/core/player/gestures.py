@@ -44,7 +44,7 @@ SHAPED = Articulation(
     length_s=1.2,
 )  # fmt: skip
 SHAPED_AT, MIN_SHAPED_S = 0.5, 0.35
-# Of the attack of a shaped note: its factor for a short note and for a long one (s). By ear; in
+# The attack of a shaped note: its factor for a short note and for a long one (s). By ear; in
 # recordings of an erhu and a violin a tenth of the notes rise within 30 ms and half in 120 to 250.
 SHORT_ATTACK, LONG_ATTACK, LONG_S, UNEVEN_ATTACK = 0.8, 3.4, 1.2, 0.3
 MIN_STOPPED_PITCH = 65.6  # MIDI note: a finger there is over 8 mm from the loop
@@ -290,7 +290,7 @@ def scaled(g: Any, factor: float) -> float:
 
 @compiled_exactly
 def attack_ms(p: Any) -> float:
-    """The time in which a lifted bow comes to its speed and force."""
+    """The time in which a lifted bow reaches its speed and force."""
     usual = p.value[ATTACK_MS] * struck_attack(p) * p.gesture.attack
     return float(usual + p.hurry * min(HURRIED_ATTACK_MS - usual, 0.0))
 

@@ -29,7 +29,7 @@ GAINS_DB = np.array((0.0, 10.0))
 
 
 def sounding_above(parts: float) -> float:
-    """The interval (semitones) from an open string to its harmonic of so many parts."""
+    """The interval (semitones) from an open string to the harmonic of a number of parts."""
     return float(round(12.0 * log2(parts)))
 
 

@@ -77,7 +77,7 @@ BEND_RAMP_MS = find("/playing/bend").smooth_ms
 DYNAMICS_EXPONENT = 1.5
 # A pitch bent farther than this from its key is not given a slide of its own.
 MAX_SEMITONES_FROM_KEY = 0.5
-SETTLING_MS = 35.0  # in which a string comes to its pitch, and what is heard is all of it
+SETTLING_MS = 35.0  # until a string has reached its pitch, and the ear has only that in its window
 
 
 # -- notes --------------------------------------------------------------------------------------
@@ -217,7 +217,7 @@ def begin_from_last(p: Any, slide_ms: float) -> tuple[int, float]:
 
 @compiled_exactly
 def reverse_bow_at_end(p: Any, c: Any) -> None:
-    """Turn a bow that comes to its end."""
+    """Change the direction of a bow that reaches its end."""
     if p.sounding < 0 or tremolo_of(p) != 0.0:
         return
     if is_at_its_end(p, c, abs(c.value[SPEED])):

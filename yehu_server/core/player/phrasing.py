@@ -18,7 +18,7 @@ from yehu_server.core.player.parameter_indices import (
     VARIATION,
 )
 
-# A sum of so many uniform numbers is all but normal.
+# A sum of this many uniform numbers is nearly normal.
 SUMMED_UNIFORMS = 12
 # Standard deviations at full variation. By ear.
 VARIED_FRACTION = 0.1  # of bow speed and pressure

@@ -40,7 +40,7 @@ from yehu_server.core.player.parameter_indices import (
 from yehu_server.core.player.vibrato_table import STEPS, vibrato_table
 from yehu_server.params.table import TABLE
 
-# Of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
+# Bins of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
 LEARNT_PITCHES, LEARNT_POSITIONS, LEARNT_SPEEDS = 52, 11, 11
 # Keys held at most. Beyond, the one held longest is let go: by the part (``midi.part_keys``), each
 # player of a section (``midi.section``) and each instrument (``held_keys``) of its own list.

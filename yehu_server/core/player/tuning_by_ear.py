@@ -16,12 +16,12 @@ from yehu_server.core.player.ownership import move_parameter
 from yehu_server.core.player.parameter_indices import FINGER_POSITION, LISTENING, PRESS
 from yehu_server.core.player.right_hand import requested_speed
 
-# Of an error, so much is corrected in a second: of a small one (cents), and of a large one. Some
+# Parts of an error that are corrected in a second: of a small error (cents), of a large one. Some
 # pitches swing about their place some eleven times a second, E5 above all: a quick hand would make
 # that last.
 SMALL_ERROR_PER_S, LARGE_ERROR_PER_S, SMALL_CENTS, LARGE_CENTS = 2.5, 12.0, 4.0, 10.0
-# A pitch that is so far off for so many hearings, and then on the other side, has jumped; as often
-# as this, and the finger rests.
+# A pitch that is off by FAR_CENTS for JUMP_HOPS hops, and then on the other side, has jumped; after
+# MAX_JUMPS the finger rests.
 FAR_CENTS, JUMP_HOPS, MAX_JUMPS = 2.5, 16, 2
 MAX_CENTS = 100.0  # of all corrections
 TOLERANCE_CENTS = 0.3  # nearer than this the finger rests

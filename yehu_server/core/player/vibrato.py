@@ -36,7 +36,7 @@ from yehu_server.core.player.vibrato_table import CENTRE, DEFAULT_DEPTH_CENTS, D
 
 # The player's own, at full phrasing; by ear.
 OWN_CENTS, OWN_DELAY_MS = 60.0, 750.0
-AUDIBLE_FROM_S = 0.6  # of a note, from which on one hears it
+AUDIBLE_FROM_S = 0.6  # length of a note from which its vibrato is audible
 # It is narrower near the nut [Pop]: its share there, and from where on it is whole.
 AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
 FADING_MS = 600.0  # after the last note

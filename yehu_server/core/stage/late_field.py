@@ -61,8 +61,8 @@ FEEDBACK_FACTOR, FEEDBACK_OFFSET = 5, 3
 MAX_GAP = 128 + CHUNK  # frames by which a prime may be longer than asked, and a block
 MOVE_S = 0.05  # in which lines take on the lengths of another size
 CLOSE_S, OPEN_S = 0.005, 0.02  # fades when the room is emptied
-# Of what is in the lines, in full scale: 55 dB below half a step of 24 bits, as eight are heard at
-# once. It cannot grow, since the matrix keeps the energy.
+# Level in the lines that counts as silence (full scale): 55 dB below half a step of 24 bits, as
+# eight are heard at once. It cannot grow, since the matrix keeps the energy.
 SILENCE_AMPLITUDE = 1e-10
 
 LATE_FIELD = np.dtype(
@@ -99,7 +99,7 @@ LATE_FIELD = np.dtype(
         ("state", np.float64, LINES),  # of the filters
         ("entry", np.int64, LINES),  # frames
         ("entry_gain", np.float64, LINES),
-        # Of each of the frames that are computed at once: what is in the lines; what one line gave
+        # For each of the frames that are computed at once: what is in the lines; what one line gave
         # before a move, and its share; the amplitude that is heard; how far the room is open.
         ("row", np.float64, (LINES, CHUNK)),
         ("was", np.float64, CHUNK),
@@ -116,7 +116,7 @@ LATE_FIELD = np.dtype(
 
 
 def power_of_two(least: float) -> int:
-    """The least power of two that is no less than a number."""
+    """The least power of two that is at least a number."""
     return 1 << math.ceil(log2(least))
 
 

@@ -12,7 +12,7 @@ from yehu_server.core.stage.late_field import LATE_FIELD, empty_room, prepare_ro
 
 TAPE = 1 << 19  # the last frames, for recorders: 10 s at 48 kHz
 BUSES = 6
-# Of both ears: the direct sound, what enters the room, what is reflected at once.
+# Columns, for both ears: the direct sound, what enters the room, what is reflected at once.
 DIRECT, SEND, EARLY = 0, 2, 4
 
 STAGE = np.dtype(

@@ -40,7 +40,7 @@ MIN_FULL_DB, FULL_FALL_DB = -55.0, 0.5 * HOP_S
 MIN_LEVEL_STEP_DB = 0.4  # dynamics less apart are the same
 MIN_DYNAMICS = 0.03  # at which a note still speaks
 # -- struck again: the level falls and rises so much, faster than it swells; a sound that stays
-# like itself meanwhile, as with the vibrato of a violin, rises by more.
+# like itself, as with the vibrato of a violin, has to rise by more.
 FALL_DB, RISE_DB, SWELL_DB, PEAK_DB = 3.0, 5.0, 90.0 * HOP_S, 40.0 * HOP_S
 STEADY_CERTAINTY, STEADY_RISE_DB = 0.9, 12.0
 MIN_STROKE_HOPS = 12  # that a stroke lasts at least
@@ -58,7 +58,7 @@ MAX_COMMANDS = 8
 
 
 def dynamics_of(level_db: Any) -> Any:
-    """The dynamics that are so many dB below full ones, as ``player`` plays them."""
+    """The dynamics at a level (dB) below that of full ones, as ``player`` plays them."""
     dynamics = elementwise(exp, np.linspace(log(MIN_DYNAMICS), 0.0, 400))
     speed = MIN_SPEED_FRACTION + (1.0 - MIN_SPEED_FRACTION) * dynamics
     level = DYNAMICS_EXPONENT * elementwise(log10, dynamics) + elementwise(log10, speed)
@@ -72,7 +72,7 @@ FOLLOWER = np.dtype(
     [
         ("rig", np.int64),  # address of the instrument that plays, where the input posts to it
         ("detector", PITCH_DETECTOR),
-        # Of the instrument: its lowest and highest note, and up to which pitch the inner string is
+        # The instrument's lowest and highest note, and up to which pitch the inner string is
         # asked for, where it was not and where it was.
         ("lowest", np.float64),
         ("highest", np.float64),
@@ -88,7 +88,7 @@ FOLLOWER = np.dtype(
         ("unvoiced_hops", np.int64),
         ("age", np.int64),  # of the stroke and of the note (hops)
         ("note_age", np.int64),
-        ("last", np.float64),  # pitch that was heard last, and the one that is followed
+        ("last", np.float64),  # pitch of the last hop, and the one that is followed
         ("followed", np.float64),
         ("octaves", np.float64),  # semitones, of this note
         ("key", np.float64),  # of the note that sounds, of VOICE_KEYS
@@ -171,7 +171,7 @@ def gate_db(f: Any) -> float:
 
 @compiled_exactly
 def await_note(f: Any, h: Any) -> None:
-    """Begin a note where a voice is heard."""
+    """Begin a note where a voice is detected."""
     if h.certainty < BEGIN_CERTAINTY or h.level_db < gate_db(f):
         share = NOISE_FALL_RATE if h.level_db < f.noise_db else NOISE_RISE_RATE
         f.noise_db += share * (h.level_db - f.noise_db)
@@ -213,7 +213,7 @@ def begin(f: Any, pitch: float) -> None:
 
 @compiled_exactly
 def played_pitch(f: Any, pitch: float) -> float:
-    """The pitch that is played for one that is heard."""
+    """The pitch that is played for a detected one."""
     played = pitch + f.a4_offset + f.transpose + f.octaves
     if f.correct > 0.0:
         nearest = nearest_of(f.tuning, played)

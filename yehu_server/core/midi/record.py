@@ -84,7 +84,7 @@ MIDI = np.dtype(
             "resolved_number",
             np.int64,
             PARAMETER_COUNT,
-        ),  # of `values.find_values`: numbers and values
+        ),  # of `values.resolve_values`: numbers and values
         ("resolved_value", np.float64, PARAMETER_COUNT),
         # Channels.
         ("bend_range", np.float64, CHANNEL_COUNT),  # semitones; NaN: RPN 0 has not set it

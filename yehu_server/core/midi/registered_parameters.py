@@ -1,7 +1,7 @@
 """Registered and other parameters (RPN, NRPN): selects one, and enters its value. Compiled.
 
 Registered are the bend range, the tuning of a channel and MPE's configuration; others are sources
-of a mapping.
+of a mapping. The bend range that a part begins with is a row of ``params.table``.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Each player corrects a share, the gain, of how far it was from each of the others at the note
 before [Wing]: A'_i = A_i - gain_i sum_j (A_i - A_j) + a random error. Their asynchronies are
 counted from the earliest, which is on time: nobody is early, and nobody later than `MAX_LATE_MS`.
-Compiled.
+How their instruments differ is in ``playing.section_instruments``. Compiled.
 """
 
 from __future__ import annotations

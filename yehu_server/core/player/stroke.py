@@ -1,8 +1,9 @@
-"""Strokes of a bow that has a length: planned, and turned before its ends. Compiled.
+"""Strokes of a bow that has a length: planned, and reversed before its ends. Compiled.
 
 A stroke whose note needs more hair than is left is drawn more slowly; where that is not enough, it
 goes the other way. In a rest the bow is lifted, and set down where the next stroke wants it. A bow
-that still comes to its end turns there.
+that still reaches its end changes direction there. The strokes of a tremolo are not planned here:
+their rate is in ``params.articulations``.
 """
 
 from __future__ import annotations

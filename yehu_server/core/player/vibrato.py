@@ -1,7 +1,8 @@
 """The vibrato of a note: as requested, as its articulation wants it, or the player's own. Compiled.
 
 Styles of vibrato are articulations (``params.articulations``). A vibrato is narrower, and off the
-note's middle, where the body would swing its level (``vibrato_table``).
+note's middle, where the body would swing its level (``vibrato_table``). Default rate and delay are
+rows of ``params.table``.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ def duet() -> tuple[Ensemble, np.ndarray]:
 
 # Fields that are only prepared at the start: what they lose does not come back.
 PREPARED = {
-    *("rate", "move_step", "open_step", "close_step"),
+    *("rate", "crossfade_step", "move_step", "open_step", "close_step"),
     *("c_1", "c_2", "pass_a", "pass_b"),
 }
 

@@ -28,7 +28,7 @@ import report
 from load import JACK, compute, dummy_jack, helper, midi_out, start
 
 from yehu_server.core.engine.mailbox import MIDI_INPUTS, SMALL_RING
-from yehu_server.core.midi.packing import PORT_AT, packed
+from yehu_server.core.midi.packing import PORT_SHIFT, packed
 from yehu_server.core.player.commands import WRITE
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live.audio.output import OutputOptions
@@ -40,7 +40,7 @@ from yehu_server.live.server import Server
 RATE = 48000
 BLOCKS = (64, 128)
 VOLUME = 7
-PORT = 0xFF << PORT_AT  # in the index of an event
+PORT = 0xFF << PORT_SHIFT  # in the index of an event
 OPEN_S, CLOSED_S = 0.04, 0.06  # longer than the volume's smoothing
 
 

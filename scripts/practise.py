@@ -18,7 +18,7 @@ from yehu_lab.practising.bowing_search import BowingSearch
 from yehu_lab.practising.candidates import DEFAULT
 from yehu_lab.practising.practice_file import as_data, as_text
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import PLACES, default_bowing_table
+from yehu_server.core.player.bowing import BOW_POSITIONS, default_bowing_table
 from yehu_server.playing.bowing_tables import SHIPPED, shipped_bowing_table
 from yehu_server.playing.calibration import calibrate
 from yehu_server.playing.calibration_store import calibration_for
@@ -42,7 +42,7 @@ def main() -> None:
         )
         print(f"{rate:g} Hz: {time.perf_counter() - start:.0f} s, usual place", flush=True)
         calibration = calibrate(rate, quantities, bowing=table)
-        others = set(range(len(PLACES))) - {DEFAULT}
+        others = set(range(len(BOW_POSITIONS))) - {DEFAULT}
         table = BowingSearch(rate, quantities, calibration).learn(table=table, places=others)
         found[rate] = as_data(table, rate)
         SHIPPED.write_text(as_text([found[known] for known in sorted(found)]), encoding="utf-8")

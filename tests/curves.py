@@ -12,7 +12,7 @@ from yehu_server.core.midi import curves, values
 from yehu_server.core.midi.events import CONTROL
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import MIDI, prepare_midi
-from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.tables import TABLE_SLOTS, TABLES
 from yehu_server.params.table import TABLE
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
@@ -55,9 +55,9 @@ def receives(bind: Bind, channel: int) -> bool:
 
 def input_to_unit(bind: Bind, argument: float) -> float:
     """The position, 0 to 1, of a named control that was sent an argument."""
-    record, tables = np.zeros(1, MIDI), np.zeros(SLOTS, TABLES)
+    record, tables = np.zeros(1, MIDI), np.zeros(TABLE_SLOTS, TABLES)
     prepare_midi(record, RATE, {param.address: param.default for param in TABLE})
     tables[0] = tables_of(bind)[0]
     addresses = record.ctypes.data, tables.ctypes.data
     interpret.call(*addresses, 0, CONTROL, 0, float(argument), 0.0)
-    return float(record["fader"][0, 0])
+    return float(record["control_position"][0, 0])

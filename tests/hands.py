@@ -29,7 +29,7 @@ DECIDED = (
     "bowing",
     "balance",
     "speed_variation",
-    "weight",
+    "pressure_variation",
     "detuned",
 )
 # Balance (dB) of notes below C5, and of those from C5 up, which are 6 dB louder.

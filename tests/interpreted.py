@@ -9,8 +9,8 @@ import numpy as np
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.interpret_events import interpret
-from yehu_server.core.midi.record import IN_PORT, MIDI, prepare_midi
-from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.record import CHANNELS_PER_PORT, MIDI, prepare_midi
+from yehu_server.core.midi.tables import TABLE_SLOTS, TABLES
 from yehu_server.core.player.commands import KINDS
 from yehu_server.params.table import TABLE
 
@@ -31,7 +31,7 @@ class Leader:
     def __init__(self) -> None:
         self.gaps: list[tuple[int, int]] = []
         self._midi = np.zeros(1, MIDI)
-        self.tables = np.zeros(SLOTS, TABLES)
+        self.tables = np.zeros(TABLE_SLOTS, TABLES)
 
     @property
     def midi(self) -> Any:
@@ -44,7 +44,7 @@ class Leader:
 
     def set_tables(self, tables: Any) -> None:
         self.tables[self.midi["tables"]] = tables[0]
-        self.midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
+        self.midi["lower"] = CHANNELS_PER_PORT - 1 if tables["mpe"][0] else 0
 
     def interpret_events(self) -> None:
         """Each event is interpreted as it comes."""

@@ -9,7 +9,13 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import new_record
-from yehu_server.core.stage.late_field import EVERY, ROOM, prepare_room, reverberate, set_room
+from yehu_server.core.stage.late_field import (
+    CHECK_FRAMES,
+    LATE_FIELD,
+    prepare_room,
+    reverberate,
+    set_room,
+)
 
 
 @dataclass(frozen=True)
@@ -25,9 +31,9 @@ class Asked:
 def _run(room: Any, first: int, asked: Any, level: Any, sound: Any, heard: Any) -> None:
     done = 0
     while done < sound.shape[0]:
-        if (first + done) % EVERY == 0:
+        if (first + done) % CHECK_FRAMES == 0:
             set_room(room[0], asked[done, 0], asked[done, 1], asked[done, 2])
-        end = min(done + EVERY - (first + done) % EVERY, sound.shape[0])
+        end = min(done + CHECK_FRAMES - (first + done) % CHECK_FRAMES, sound.shape[0])
         reverberate(room[0], first + done, level[done:end], sound[done:end], heard[done:end])
         done = end
 
@@ -37,7 +43,7 @@ class Room:
 
     def __init__(self, rate: float, asked: Asked) -> None:
         self.rate, self.asked = rate, asked
-        self.record = new_record(ROOM)
+        self.record = new_record(LATE_FIELD)
         prepare_room(self.record[0], rate)
         self.frame = 0
         self.hear(np.zeros((round(0.5 * rate), 2)))

@@ -47,7 +47,9 @@ def signals() -> dict[str, np.ndarray]:
     instrument, out = phrase()
     rig = instrument._rig[0]
     told = [instrument.meters()[what] for what in ("pitch", "applied", "next_frame")]
-    player = [rig["player"][what] for what in ("held", "sounding", "direction", "drawn", "finger")]
+    player = [
+        rig["player"][what] for what in ("held", "sounding", "direction", "random_count", "finger")
+    ]
     return {
         "samples": out,
         "displacements": rig["state"]["motion"]["z"].copy(),

@@ -20,7 +20,7 @@ from yehu_lab.plot.sweep_maps import draw_map, map_of
 from yehu_lab.sweeps.result import Result
 from yehu_lab.sweeps.running import sweep
 from yehu_lab.sweeps.study import study_of
-from yehu_server.core.controls.hands import FAST, FAST_SHARE
+from yehu_server.core.controls.kernel_controls import EXTRA_SHARE, EXTRA_SHARE_SPEED
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.schelleng import upper_limit
 from yehu_server.core.player.bowing import (
@@ -29,11 +29,11 @@ from yehu_server.core.player.bowing import (
     AT_LIGHT,
     DISTANCE_FACTOR,
     FIRM,
-    LEAST_PRESS,
     LIGHT,
+    MIN_PRESS,
     TOP_SPEED,
+    bow_pressure_for,
     bowing_value,
-    share,
 )
 from yehu_server.params.table import find
 from yehu_server.playing.bowing_tables import shipped_bowing_table
@@ -71,16 +71,16 @@ class Player:
 
     def force(self, speed: Array, beta: float, command: float) -> Array:
         """The force (N) that the player's assist sets for a value of ``/playing/pressure``."""
-        fast = FAST_SHARE * np.minimum(1.0, (np.asarray(speed) / FAST) ** 2)
+        fast = EXTRA_SHARE * np.minimum(1.0, (np.asarray(speed) / EXTRA_SHARE_SPEED) ** 2)
         flautando, light, firm = map(self.bowing_value, (AT_FLAUTANDO, AT_LIGHT, AT_FIRM))
-        usual = share(flautando, light, firm, command, self.string)
+        usual = bow_pressure_for(flautando, light, firm, command, self.string)
         highest = speed * upper_limit(self.impedance, self.grip, 1.0, beta)  # it goes as the speed
         return (usual + fast) * highest
 
 
 def bowed(player: Player, vary: dict[str, Any]) -> Result:
     """Bow the note in all combinations."""
-    press = max(find("/playing/press").default, player.bowing_value(LEAST_PRESS))
+    press = max(find("/playing/press").default, player.bowing_value(MIN_PRESS))
     stroke = {"string": player.string + 1, "note": player.note, "press": press}
     along = next(name for name in ("position", "speed") if isinstance(vary.get(name), dict))
     return sweep(
@@ -104,9 +104,9 @@ def draw(axes: Any, found: Result, x: str, at: dict[str, int]) -> None:
     axes.set(xlabel=LABELS[x], ylabel="")
     shares = np.bincount(cells.astype(int).ravel(), minlength=len(found.regimes)) / cells.size
     words = [
-        f"{name} {100 * share:.0f}"
-        for name, share in zip(found.regimes, shares, strict=False)
-        if share
+        f"{name} {100 * part:.0f}"
+        for name, part in zip(found.regimes, shares, strict=False)
+        if part
     ]
     print(f"{axes.get_title():16} per cent: {', '.join(words)}")
 

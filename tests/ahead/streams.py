@@ -20,7 +20,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
-from yehu_server.core.midi.tables import SLOTS
+from yehu_server.core.midi.tables import TABLE_SLOTS
 from yehu_server.core.player import commands
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.table import find
@@ -170,7 +170,7 @@ class Maker:
         self.stream.tables.append(made)
         count = len(self.stream.tables)
         self._frame += 2 * BLOCK  # those before are in use
-        self._step("map", (count - 1,), (events.TABLES_TO, count % SLOTS, 0.0, 0.0))
+        self._step("map", (count - 1,), (events.TABLES_TO, count % TABLE_SLOTS, 0.0, 0.0))
 
     def _call(self, name: str, given: list[Any]) -> None:
         *arguments, _frame = given
@@ -263,7 +263,7 @@ def played(stream: Stream) -> np.ndarray:
             step = steps.pop()
             for kind, index, value, other in step.events:
                 if kind == events.TABLES_TO:
-                    assert first.midi["tables"] == (index - 1) % SLOTS
+                    assert first.midi["tables"] == (index - 1) % TABLE_SLOTS
                     first.tables[index] = next(tables)[0]
                 assert first.post(kind, frame=step.frame, index=index, value=value, other=other)
         ensemble.process(out)

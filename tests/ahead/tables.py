@@ -17,7 +17,14 @@ from live.page import streams
 from yehu_server.ahead.table_checks import CHECKS
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
-from yehu_server.core.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, PROGRAMS, SLOTS, TABLES
+from yehu_server.core.midi.tables import (
+    KEY_COUNT,
+    MAX_BINDS,
+    MAX_POINTS,
+    PROGRAM_COUNT,
+    TABLE_SLOTS,
+    TABLES,
+)
 from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
@@ -25,7 +32,7 @@ from yehu_server.playing.tuning import EQUAL, RangePolicy, read_tuning
 
 TUNINGS = (EQUAL, read_tuning(Path("chaozhou-seven-equal")))
 WILD = (math.nan, math.inf, -math.inf, 1e308, -1e308, 1e-310, -1.0, 0.5, 1e9)
-ENDS = (PARAMETER_COUNT, KEYS, MOST_BINDS, MOST_POINTS, 1 << 16)  # of arrays, and of channels
+ENDS = (PARAMETER_COUNT, KEY_COUNT, MAX_BINDS, MAX_POINTS, 1 << 16)  # of arrays, and of channels
 USED = [name for name in TABLES.names or () if name not in ("x", "y")]
 MESSAGES = 12
 
@@ -82,12 +89,12 @@ def play(count: int) -> dict[str, int]:
             counts["refused"] += 1
             continue
         counts["taken"] += 1
-        slot = (int(leader.midi["tables"]) + 1) % SLOTS
+        slot = (int(leader.midi["tables"]) + 1) % TABLE_SLOTS
         leader.tables[slot] = tables[0]
         posted = [(events.TABLES_TO, slot, 0.0), (events.START, 0, float(chance.randrange(2)))]
         posted += [(events.MESSAGE, message(chance), 0.0) for _ in range(MESSAGES)]
         posted += [(events.CONTROL, n, chance.uniform(-1e9, 1e9)) for n in range(2)]
-        posted += [(events.MESSAGE, packed([0xC0, chance.randrange(PROGRAMS)]), 0.0)]
+        posted += [(events.MESSAGE, packed([0xC0, chance.randrange(PROGRAM_COUNT)]), 0.0)]
         for frame, event in enumerate(posted):
             found = leader.interpret(frame, *event, 0.0)
             assert np.isfinite([command[2:] for command in found]).all(), (tables, event, found)

@@ -11,7 +11,7 @@ from yehu_server.ahead.table_checks import FIELDS
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi import tables as layout
-from yehu_server.core.midi.tables import KEYS, MOST_BINDS, MOST_POINTS, TABLES
+from yehu_server.core.midi.tables import KEY_COUNT, MAX_BINDS, MAX_POINTS, TABLES
 from yehu_server.core.player.parameter_indices import INDEX, PARAMETER_COUNT
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
@@ -67,7 +67,7 @@ def test_no_field_has_a_wild_number(right):
 
 
 WRONG = [
-    ("binds", 0, MOST_BINDS + 1),
+    ("binds", 0, MAX_BINDS + 1),
     ("binds", 0, 1.5),
     ("source", BEND, 160),  # no pair
     ("source", BEND, 205),
@@ -75,7 +75,7 @@ WRONG = [
     ("source", BEND, 100.5),
     ("source", BEND, 1),  # whose first bind is another
     ("first", POINTED, 1),
-    ("first", BEND, MOST_BINDS),
+    ("first", BEND, MAX_BINDS),
     ("target", BEND, PARAMETER_COUNT),
     ("target", BEND, -1),
     ("lo", EXPONENTIAL, SPEED.lo - 1e-9),
@@ -83,10 +83,10 @@ WRONG = [
     ("lo", EXPONENTIAL, 0.0),  # of a curve of equal ratios
     ("curve", BEND, layout.POINTS + 1),
     ("curve", BEND, layout.EXPONENTIAL),
-    ("first_point", POINTED, MOST_POINTS - 2),
+    ("first_point", POINTED, MAX_POINTS - 2),
     ("first_point", POINTED, 1),
     ("points", POINTED, 1),
-    ("points", POINTED, MOST_POINTS),
+    ("points", POINTED, MAX_POINTS),
     ("points", POINTED, 2),  # the last is not at 1
     ("x", 1, 0.0),
     ("x", 2, 0.9),
@@ -100,7 +100,7 @@ WRONG = [
     ("start_value", 0, 1.5),
     ("usual", INDEX["/playing/speed"], SPEED.hi + 1.0),
     ("usual", INDEX["/playing/volume"], 1e-300),  # something is divided by it
-    ("pitch", KEYS - 1, 1e308),
+    ("pitch", KEY_COUNT - 1, 1e308),
     ("policy", 0, 3),
     ("received", 0, 1 << 16),
     ("received", 0, -2),

@@ -27,7 +27,7 @@ from yehu_server.core.engine.mailbox import RING
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
-from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.tables import TABLE_SLOTS, TABLES
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.tables import Controls
 
@@ -177,15 +177,15 @@ def test_tables_are_taken_one_after_another_and_those_in_use_are_not_touched(ins
     for number in range(1, 6):
         tables = PlayingOptions(a4=440.0 - number).tables(Controls())
         slot = int(instrument.midi["tables"])
-        before = instrument.tables[[slot, (slot - 1) % SLOTS]].tobytes()
+        before = instrument.tables[[slot, (slot - 1) % TABLE_SLOTS]].tobytes()
         assert mapped(instrument, tables, instrument.frame + 200) == 1
         assert mapped(instrument, tables) == 0  # the others are not in use yet
         instrument.process(out)
         assert mapped(instrument, tables) == 0
-        assert instrument.tables[[slot, (slot - 1) % SLOTS]].tobytes() == before
+        assert instrument.tables[[slot, (slot - 1) % TABLE_SLOTS]].tobytes() == before
         instrument.process(out)
-        assert instrument.midi["tables"] == number % SLOTS
-        assert instrument.tables[number % SLOTS].tobytes() == tables.tobytes()
+        assert instrument.midi["tables"] == number % TABLE_SLOTS
+        assert instrument.tables[number % TABLE_SLOTS].tobytes() == tables.tobytes()
 
 
 def test_tables_of_another_size_are_refused(instrument):

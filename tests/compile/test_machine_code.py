@@ -20,7 +20,7 @@ from yehu_server.compile.cache_folder import source_hash
 from yehu_server.compile.jit import Native
 from yehu_server.core.engine import warming
 from yehu_server.core.engine.warming import all_functions, warm_up
-from yehu_server.core.physics.time_loop import advance, advance_booked
+from yehu_server.core.physics.time_loop import advance, advance_with_ledger
 from yehu_server.simulation.run import COMPILED
 from yehu_server.util.checksummed import read_checksummed, write_checksummed
 
@@ -207,7 +207,7 @@ def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
         return capsys.readouterr().err
 
     warm_up()
-    for more, missing in (({}, advance), (COMPILED, advance_booked)):
+    for more, missing in (({}, advance), (COMPILED, advance_with_ledger)):
         assert warned(more) == ""
         with monkeypatch.context() as patched:
             patched.setattr(machine_code, "loaded", cache(lambda *_: {}))

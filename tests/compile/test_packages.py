@@ -16,9 +16,9 @@ LOOK = """
 import yehu_lab, yehu_server
 from yehu_lab.regimes.strokes import bow_stroke
 from yehu_server.core.engine import warming
-from yehu_server.core.physics.time_loop import advance_booked
+from yehu_server.core.physics.time_loop import advance_with_ledger
 print(yehu_lab.__path__[0], yehu_server.__path__[0])
-print(warming.is_warm(), advance_booked.is_kept, bow_stroke.is_kept, bow_stroke.is_cached)
+print(warming.is_warm(), advance_with_ledger.is_kept, bow_stroke.is_kept, bow_stroke.is_cached)
 """
 """Prints where both packages are, and whether playing, simulating and a stroke are compiled."""
 

@@ -9,7 +9,7 @@ import numpy as np
 from interpreted import ALL_KINDS, Leader, Requested
 
 from yehu_server.core.controls.record import prepare_controls
-from yehu_server.core.controls.slots import HIGHEST, LOWEST
+from yehu_server.core.controls.slots import LOWER_BOUNDS, UPPER_BOUNDS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.commands import KINDS, apply
 from yehu_server.core.player.notes import sounding_pitch
@@ -83,7 +83,9 @@ class Instrument(Leader):
         assert math.isfinite(other), command
         apply.call(self._player.ctypes.data, self._controls.ctypes.data, self.frame, *command)
         target = self._controls["target"][0]
-        assert ((target >= LOWEST) & (target <= HIGHEST)).all(), command  # also refuses NaN
+        assert ((target >= LOWER_BOUNDS) & (target <= UPPER_BOUNDS)).all(), (
+            command
+        )  # also refuses NaN
 
     def check_player(self) -> None:
         """All that the player decides by is a number."""

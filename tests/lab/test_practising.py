@@ -24,8 +24,8 @@ from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
-    FIRST,
-    PLACES,
+    BOW_POSITIONS,
+    FIRST_NOTE,
     default_bowing_table,
 )
 from yehu_server.core.player.note_range import LOWEST_NOTE
@@ -34,8 +34,8 @@ from yehu_server.playing.bowing_tables import read_bowing_table, shipped_bowing_
 from yehu_server.playing.calibration_store import calibration_for
 
 RATE = 44100.0
-PLACE = PLACES.index(0.1)
-DEFAULT = PLACES.index(find("/playing/bow_position").default)
+PLACE = BOW_POSITIONS.index(0.1)
+DEFAULT = BOW_POSITIONS.index(find("/playing/bow_position").default)
 
 PASSAGES = [
     Passage(before, speed, 0.42, is_slurred, 0.12)
@@ -51,7 +51,7 @@ def table_search() -> BowingSearch:
 @pytest.mark.parametrize(("note", "factor"), [(70, 0.02), (70, 30.0), (74, 0.02), (80, 30.0)])
 def test_a_manner_that_speaks_is_distinguished_from_one_that_cannot(table_search, note, factor):
     string = int(note > 71)
-    good = shipped_bowing_table(RATE)[string, DEFAULT, note - FIRST]
+    good = shipped_bowing_table(RATE)[string, DEFAULT, note - FIRST_NOTE]
     bad = good.copy()  # too light, or too heavy
     bad[AT_FLAUTANDO : AT_FIRM + 1] *= factor
     search = SearchedNote(string, note, DEFAULT, good)
@@ -73,7 +73,7 @@ def test_notes_are_practised_at_the_pitches_of_a_tuning_and_heard_early_and_late
     table_search = BowingSearch(
         RATE, Quantities(), calibration_for(RATE), tuning=lambda key: key + 0.35
     )
-    bowing = default_bowing_table()[0, PLACE, 70 - FIRST]
+    bowing = default_bowing_table()[0, PLACE, 70 - FIRST_NOTE]
     assert table_search.score(SearchedNote(0, 70, PLACE, bowing), bowing, PASSAGES) == 1.0
     assert set(played) == {70.35}
     each_s = BEFORE_S + EACH_S
@@ -92,7 +92,7 @@ def one_note(monkeypatch) -> None:
 
     def score(_self, search, bowing, _passages):
         return float(
-            not np.isclose(bowing, shipped[search.string, :, search.note - FIRST])
+            not np.isclose(bowing, shipped[search.string, :, search.note - FIRST_NOTE])
             .all(axis=-1)
             .any()
         )
@@ -121,8 +121,8 @@ def test_what_practise_writes_render_takes(command, tmp_path):
             axis=-1
         )
         assert changed.sum() == summary["improved"] > 0 or words
-        assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST)}
-        assert not (words and changed[:, np.array(PLACES) > 0.1].any())
+        assert set(zip(*np.nonzero(changed.any(axis=1)), strict=True)) <= {(0, 70 - FIRST_NOTE)}
+        assert not (words and changed[:, np.array(BOW_POSITIONS) > 0.1].any())
         _, summary, _ = command("render", *rendered, "--practice", path, "--overwrite")
         assert json.loads(summary)["practice"] == str(path)
         path.unlink()
@@ -137,8 +137,8 @@ def test_practising_goes_on_from_what_lies_beside_the_instrument(command, tmp_pa
     code, _, error = command("practise", "--instrument", instrument, "-o", beside, "--quiet")
     assert code == 0, error
     same = np.isclose(read_bowing_table(beside), table, atol=1e-4).all(axis=-1)
-    same[0, :, 70 - FIRST] = True
-    same[0, :, : LOWEST_NOTE - FIRST] = True  # as the open string
+    same[0, :, 70 - FIRST_NOTE] = True
+    same[0, :, : LOWEST_NOTE - FIRST_NOTE] = True  # as the open string
     assert same.all()
 
 

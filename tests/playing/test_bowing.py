@@ -13,19 +13,19 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
+    BOW_POSITIONS,
     BOWING_SIZE,
     DEFAULT_BOWING,
     DISTANCE_FACTOR,
     FIRM,
-    FIRST,
+    FIRST_NOTE,
     FLAUTANDO,
-    LEAST_PRESS,
     LIGHT,
-    PLACES,
+    MIN_PRESS,
     TOP_SPEED,
+    bow_pressure_for,
     bowing_value,
     default_bowing_table,
-    share,
 )
 from yehu_server.playing.bowing_tables import shipped_bowing_table
 from yehu_server.playing.part_state import Key
@@ -37,7 +37,7 @@ PLACE = 0.13
 
 def usual(string: int, note: int) -> list[float]:
     """How a note is bowed by the table that ships."""
-    return list(SHIPPED[string, PLACES.index(PLACE), note - FIRST])
+    return list(SHIPPED[string, BOW_POSITIONS.index(PLACE), note - FIRST_NOTE])
 
 
 def bowed(string: int, pitch: float, place: float = PLACE) -> list[float]:
@@ -48,7 +48,7 @@ def bowed(string: int, pitch: float, place: float = PLACE) -> list[float]:
 def pressure(string: int, command: float, pitch: float) -> float:
     """The bow's pressure at a pitch, for a command."""
     m = bowed(string, pitch)
-    return share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], command, string)
+    return bow_pressure_for(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], command, string)
 
 
 def test_ordinarily_notes_are_bowed_as_asked_and_on_the_f_string_not_near_the_bridge():
@@ -57,13 +57,13 @@ def test_ordinarily_notes_are_bowed_as_asked_and_on_the_f_string_not_near_the_br
     assert np.all(
         np.delete(table[0], DISTANCE_FACTOR, axis=-1) == np.delete(DEFAULT_BOWING, DISTANCE_FACTOR)
     )
-    positions = table[0, ..., DISTANCE_FACTOR] * np.array(PLACES)[:, None]
+    positions = table[0, ..., DISTANCE_FACTOR] * np.array(BOW_POSITIONS)[:, None]
     assert positions.min() == pytest.approx(0.17)
-    assert np.all(table[0, PLACES.index(0.25), :, DISTANCE_FACTOR] == 1.0)
+    assert np.all(table[0, BOW_POSITIONS.index(0.25), :, DISTANCE_FACTOR] == 1.0)
     for command in (0.1, 0.2, 0.25, 0.3, 0.42, 0.55):
-        assert share(*DEFAULT_BOWING[AT_FLAUTANDO : AT_FIRM + 1], command, 0) == pytest.approx(
-            command
-        )
+        assert bow_pressure_for(
+            *DEFAULT_BOWING[AT_FLAUTANDO : AT_FIRM + 1], command, 0
+        ) == pytest.approx(command)
 
 
 def test_a_note_is_bowed_as_its_table_says_and_leans_between_its_ends(subtests):
@@ -82,24 +82,24 @@ def test_a_note_is_bowed_as_its_table_says_and_leans_between_its_ends(subtests):
 def test_pressure_goes_from_flautando_to_scratch_without_a_step():
     shares = DEFAULT_BOWING[AT_FLAUTANDO : AT_FIRM + 1]
     for string, edge in ((0, 1.3), (1, 4.0)):
-        pressures = [share(*shares, 0.01 * command, string) for command in range(201)]
+        pressures = [bow_pressure_for(*shares, 0.01 * command, string) for command in range(201)]
         assert (pressures[0], pressures[100]) == (0.0, pytest.approx(edge))
         assert 0.0 < np.diff(pressures).min() < np.diff(pressures).max() < 0.1
 
 
 def test_between_two_places_a_note_is_bowed_in_between_and_beyond_them_as_at_the_last():
     table = default_bowing_table()
-    table[0, :, :, DISTANCE_FACTOR] = np.arange(len(PLACES))[:, None]
+    table[0, :, :, DISTANCE_FACTOR] = np.arange(len(BOW_POSITIONS))[:, None]
 
     def farther(place: float) -> float:
         return float(bowing_value(table, 0, place, 70.5, DISTANCE_FACTOR))
 
-    for row, (near, far) in enumerate(itertools.pairwise(PLACES)):
+    for row, (near, far) in enumerate(itertools.pairwise(BOW_POSITIONS)):
         assert farther(near) == pytest.approx(row, abs=1e-9)
         assert farther(math.sqrt(near * far)) == pytest.approx(row + 0.5)
-    assert farther(PLACES[-1]) == pytest.approx(len(PLACES) - 1)
+    assert farther(BOW_POSITIONS[-1]) == pytest.approx(len(BOW_POSITIONS) - 1)
     assert farther(0.01) == 0.0
-    assert farther(1.0) == len(PLACES) - 1
+    assert farther(1.0) == len(BOW_POSITIONS) - 1
 
 
 SLOWEST, FARTHEST, HARDEST = 0.1, 1.7, 3.0
@@ -109,9 +109,9 @@ SLOWEST, FARTHEST, HARDEST = 0.1, 1.7, 3.0
 def listener() -> Watched:
     """A player for whom A4 bears no fast bow; F sharp 4 wants one far away, and a firm finger."""
     bowing = default_bowing_table()
-    bowing[0, :, 69 - FIRST, TOP_SPEED] = SLOWEST
-    bowing[0, :, 66 - FIRST, DISTANCE_FACTOR] = FARTHEST
-    bowing[0, :, 66 - FIRST, LEAST_PRESS] = HARDEST
+    bowing[0, :, 69 - FIRST_NOTE, TOP_SPEED] = SLOWEST
+    bowing[0, :, 66 - FIRST_NOTE, DISTANCE_FACTOR] = FARTHEST
+    bowing[0, :, 66 - FIRST_NOTE, MIN_PRESS] = HARDEST
     return Watched(calibration=ideal(), bowing=bowing)
 
 

@@ -8,7 +8,7 @@ import pytest
 from hands import Checked, Move, Watched, ideal
 
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.velocity import NEUTRAL
+from yehu_server.core.player.velocity import NEUTRAL_VELOCITY
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.part_state import Key
@@ -193,7 +193,7 @@ def test_a_stroke_begins_and_ends_in_the_times_set_for_it(player, listener):
 
 def test_a_lifted_bow_takes_its_time_for_a_gentle_note_and_bites_for_a_hard_one():
     took: dict[float, float] = {}
-    for velocity in (0.0, NEUTRAL, 1.0):
+    for velocity in (0.0, NEUTRAL_VELOCITY, 1.0):
         player, listener = hands()
         player.write("/playing/attack", 80.0)
         player.write("/playing/velocity", velocity)
@@ -201,7 +201,7 @@ def test_a_lifted_bow_takes_its_time_for_a_gentle_note_and_bites_for_a_hard_one(
         took[velocity] = listener.of("/bow/speed")[-1].ramp_ms
         force = listener.of("/bow/side")[-1]  # it is there before the speed
         assert (force.value, force.ramp_ms) == (1.0, pytest.approx(took[velocity] / 4.0, abs=0.1))
-    assert took[NEUTRAL] == 80.0
+    assert took[NEUTRAL_VELOCITY] == 80.0
     assert took[0.0] > 1.5 * 80.0
     assert took[1.0] < 0.75 * 80.0
 

@@ -16,9 +16,9 @@ from yehu_lab.practising.practice_file import write_bowing_table
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
-    FIRST,
-    LAST,
-    PLACES,
+    BOW_POSITIONS,
+    FIRST_NOTE,
+    LAST_NOTE,
     TOP_SPEED,
     default_bowing_table,
 )
@@ -32,7 +32,7 @@ from yehu_server.playing.bowing_tables import (
 )
 
 RATE = 44100.0
-PLACE = PLACES.index(0.1)
+PLACE = BOW_POSITIONS.index(0.1)
 NAN = float("nan")
 
 
@@ -113,7 +113,10 @@ BAD = [
     *(with_row([*GOOD[:-1], value]) for value in (NAN, -0.1, 11.0)),
     *(with_row([*GOOD[:4], value, 0.0]) for value in (NAN, 0.0, 6.0)),
     *(with_row([*GOOD[:1], value, *GOOD[2:]]) for value in (NAN, -0.1, 13.0)),
-    *(with_row(GOOD, note) for note in (str(FIRST - 1), str(LAST + 1), "-1", "x", "70.5", "")),
+    *(
+        with_row(GOOD, note)
+        for note in (str(FIRST_NOTE - 1), str(LAST_NOTE + 1), "-1", "x", "70.5", "")
+    ),
     *(with_row(GOOD, place=place) for place in ("0.11", "0", "-0.1", "x", "nan", "")),
     *(with_row(GOOD, string=string) for string in ("0", "1", "F", "")),
 ]
@@ -141,7 +144,7 @@ def test_a_practice_that_is_missing_or_a_folder_or_the_target_is_refused_in_one_
         assert str(path) in line
     path = file(with_row(GOOD))
     assert "practice" in refused("render", tune, "-o", path, "--format", "wav", "--practice", path)
-    assert list(read_bowing_table(path)[0, PLACE, 70 - FIRST]) == GOOD
+    assert list(read_bowing_table(path)[0, PLACE, 70 - FIRST_NOTE]) == GOOD
 
 
 def test_what_was_practised_is_heard_and_named(render, tmp_path):

@@ -16,8 +16,8 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG_BYTES
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.interpret_events import interpret
-from yehu_server.core.midi.record import IN_PORT, MIDI, clear_held, prepare_midi
-from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.record import CHANNELS_PER_PORT, MIDI, clear_held, prepare_midi
+from yehu_server.core.midi.tables import TABLE_SLOTS, TABLES
 from yehu_server.core.player import commands as kinds
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.table import TABLE, find
@@ -53,7 +53,7 @@ class Kept:
 
     def __init__(self, number: int, part: list[Kept]) -> None:
         self.address, self._part = number * RIG_BYTES, part
-        self._midi, self.tables = np.zeros(1, MIDI), np.zeros(SLOTS, TABLES)
+        self._midi, self.tables = np.zeros(1, MIDI), np.zeros(TABLE_SLOTS, TABLES)
         self.posted = 0
         self.all: list[Posted] = []
         self.sounding_pitch = np.nan
@@ -66,7 +66,7 @@ class Kept:
 
     def set_tables(self, tables) -> None:
         self.tables[0] = tables[0]
-        self.midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
+        self.midi["lower"] = CHANNELS_PER_PORT - 1 if tables["mpe"][0] else 0
 
     @property
     def midi(self):

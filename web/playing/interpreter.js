@@ -38,7 +38,7 @@ export class Interpreter {
     /** The values of parameters, by index. */
     this.values = this.#of(record.value);
     /** The last values of binds, by index; the size of a section is not limited here. */
-    this.found = this.#of(record.found_value);
+    this.found = this.#of(record.resolved_value);
   }
 
   /** @param {number[]} field */

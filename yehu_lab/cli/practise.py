@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_lab.practising.candidates import DEFAULT
     from yehu_lab.practising.practice_file import write_bowing_table
     from yehu_server.core.physics.grid import check_rate
-    from yehu_server.core.player.bowing import PLACES
+    from yehu_server.core.player.bowing import BOW_POSITIONS
     from yehu_server.playing.bowing_tables import (
         bowing_table_beside,
         read_bowing_table,
@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     known = shipped_bowing_table(arguments.rate) if beside is None else read_bowing_table(beside)
     compile_all(arguments)
     table, improved = known, 0
-    others = set(range(len(PLACES))) - {DEFAULT}
+    others = set(range(len(BOW_POSITIONS))) - {DEFAULT}
     for places in ({DEFAULT}, others):  # the instrument is calibrated at the usual place
         with progress_bar(arguments, "calibrating", "notes") as progress:
             calibration = calibration_for(

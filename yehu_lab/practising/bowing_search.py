@@ -31,9 +31,9 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
-    FIRST,
+    BOW_POSITIONS,
+    FIRST_NOTE,
     FLAUTANDO,
-    PLACES,
     default_bowing_table,
 )
 from yehu_server.core.player.note_range import LOWEST_NOTE, NoteRange
@@ -87,14 +87,14 @@ class BowingSearch:
         self._rate = rate
         self._speeds: tuple[float, ...] = SPEEDS
         self._pressures: tuple[float, ...] = PRESSURES
-        self._places = range(len(PLACES))
+        self._places = range(len(BOW_POSITIONS))
         if "/playing/speed" in values:
             self._speeds = (values["/playing/speed"],)
         if "/playing/pressure" in values:
             self._pressures = (values["/playing/pressure"],)
         if "/playing/bow_position" in values:
-            above = bisect_left(PLACES, values["/playing/bow_position"])
-            self._places = range(max(above - 1, 0), min(above + 1, len(PLACES)))
+            above = bisect_left(BOW_POSITIONS, values["/playing/bow_position"])
+            self._places = range(max(above - 1, 0), min(above + 1, len(BOW_POSITIONS)))
         self.notes_changed = 0
         self._tuned = calibration.tuned(quantities)
         self._calibration = calibration
@@ -104,13 +104,13 @@ class BowingSearch:
         progress: Progress | None = None,
         *,
         table: Array | None = None,
-        places: Iterable[int] = range(len(PLACES)),
+        places: Iterable[int] = range(len(BOW_POSITIONS)),
     ) -> Array:
         """Practise all notes; return a table as `default_bowing_table` does.
 
         `progress`: called with the number of notes done and of all notes.
         `table` (ndarray, optional): how notes are bowed to begin with; by default all alike.
-        `places`: indices of PLACES to practise.
+        `places`: indices of BOW_POSITIONS to practise.
         """
         table = default_bowing_table() if table is None else table.copy()
         asked = [place for place in places if place in self._places]
@@ -118,16 +118,16 @@ class BowingSearch:
             stops = stops_of(self._notes)
             for done, (string, note) in enumerate(stops, start=1):
                 for place in sorted(asked, key=lambda place: place != DEFAULT):
-                    start = table[string, place, note - FIRST].copy()
+                    start = table[string, place, note - FIRST_NOTE].copy()
                     there = None if place == DEFAULT else moved(table, string, note, place)
                     found = self._best(
                         SearchedNote(string, note, place, start, there, self._notes), workers
                     )
                     self.notes_changed += int(np.any(found != start))
-                    table[string, place, note - FIRST] = found
+                    table[string, place, note - FIRST_NOTE] = found
                 if progress is not None:
                     progress(done, len(stops))
-        table[0, :, : LOWEST_NOTE - FIRST] = table[0, :, LOWEST_NOTE - FIRST, None]
+        table[0, :, : LOWEST_NOTE - FIRST_NOTE] = table[0, :, LOWEST_NOTE - FIRST_NOTE, None]
         return table
 
     def _best(self, search: SearchedNote, workers: ThreadPoolExecutor) -> Array:
@@ -189,7 +189,7 @@ class BowingSearch:
         table = default_bowing_table()
         stopped = self._pitches[search.sounds] - search.above
         for row in {math.floor(stopped), math.ceil(stopped)}:
-            table[search.string, :, row - FIRST] = bowing
+            table[search.string, :, row - FIRST_NOTE] = bowing
         spec = InstrumentSpec(self._rate, self._tuned, calibration=self._calibration, bowing=table)
         instrument = Instrument(spec)
         instrument.disable_pressure_correction()
@@ -197,7 +197,7 @@ class BowingSearch:
         commands.write("/playing/variation", 0.0)
         commands.write("/playing/bow_length", 0.0)
         instrument.write("/bow/noise", 0.0, ramp_ms=0.0)
-        commands.write("/playing/bow_position", PLACES[search.place])
+        commands.write("/playing/bow_position", BOW_POSITIONS[search.place])
         if search.is_high_on_inner:
             commands.write("/playing/string", 1.0)
         speaks, off, count = 0.0, 0.0, 0

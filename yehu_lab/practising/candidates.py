@@ -10,10 +10,10 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
+    BOW_POSITIONS,
     DISTANCE_FACTOR,
-    FIRST,
-    LEAST_PRESS,
-    PLACES,
+    FIRST_NOTE,
+    MIN_PRESS,
     TOP_SPEED,
     default_bowing_table,
 )
@@ -21,7 +21,7 @@ from yehu_server.params.table import find
 
 Array = Any
 
-DEFAULT = PLACES.index(find("/playing/bow_position").default)  # practised first
+DEFAULT = BOW_POSITIONS.index(find("/playing/bow_position").default)  # practised first
 # Distances of the bow from the bridge, relative to those asked for; on the F string at the default
 # place, too.
 FARTHERS = ((0.7, 0.85, 1.0, 1.2, 1.45, 1.75), (0.75, 0.87, 1.0, 1.15))
@@ -38,7 +38,7 @@ AWAY, CHANGED = 0.05, 0.02  # lost for moving the bow by a factor of e, and its 
 def elsewhere(best: Array, string: int, place: int) -> Iterator[Array]:
     """The bow at other places, with other shares of Schelleng's limit."""
     farthers = (DEFAULT_FARTHERS if place == DEFAULT else FARTHERS)[string]
-    asked = (PLACES[place] * farther for farther in farthers)
+    asked = (BOW_POSITIONS[place] * farther for farther in farthers)
     return _varied(best, string, place, {*asked, *_near(best, place)}, SHARES)
 
 
@@ -49,7 +49,7 @@ def slower(best: Array, _string: int, _place: int) -> Iterator[Array]:
 
 def pressed(best: Array, _string: int, _place: int) -> Iterator[Array]:
     """Other fingers."""
-    return (changed(best, LEAST_PRESS, press) for press in PRESSES)
+    return (changed(best, MIN_PRESS, press) for press in PRESSES)
 
 
 def firmer(best: Array, _string: int, _place: int) -> Iterator[Array]:
@@ -76,11 +76,13 @@ def moved(table: Array, string: int, note: int, place: int) -> Array:
 
     On the F string it moves as far as ordinarily.
     """
-    bowing = table[string, DEFAULT, note - FIRST].copy()
-    ordinary = default_bowing_table()[string, :, note - FIRST, DISTANCE_FACTOR]
+    bowing = table[string, DEFAULT, note - FIRST_NOTE].copy()
+    ordinary = default_bowing_table()[string, :, note - FIRST_NOTE, DISTANCE_FACTOR]
     bowing[DISTANCE_FACTOR] *= ordinary[place] / ordinary[DEFAULT]
-    farthest = FARTHEST / PLACES[place]
-    bowing[DISTANCE_FACTOR] = min(max(bowing[DISTANCE_FACTOR], NEAREST / PLACES[place]), farthest)
+    farthest = FARTHEST / BOW_POSITIONS[place]
+    bowing[DISTANCE_FACTOR] = min(
+        max(bowing[DISTANCE_FACTOR], NEAREST / BOW_POSITIONS[place]), farthest
+    )
     return bowing
 
 
@@ -99,7 +101,7 @@ def changed(bowing: Array, column: int, value: float) -> Array:
 
 def _near(best: Array, place: int) -> list[float]:
     """Bow positions close to that of a bowing."""
-    return [PLACES[place] * best[DISTANCE_FACTOR] * near for near in FINE_FARTHERS]
+    return [BOW_POSITIONS[place] * best[DISTANCE_FACTOR] * near for near in FINE_FARTHERS]
 
 
 def _varied(
@@ -110,7 +112,7 @@ def _varied(
         if not NEAREST <= position <= FARTHEST:
             continue
         for share in shares:
-            other = changed(best, DISTANCE_FACTOR, position / PLACES[place])
+            other = changed(best, DISTANCE_FACTOR, position / BOW_POSITIONS[place])
             other[[AT_FLAUTANDO, AT_LIGHT, AT_FIRM]] *= share
             other[AT_FIRM] = min(other[AT_FIRM], FIRMEST[string])
             yield other

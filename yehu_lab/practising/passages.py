@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.player.bowing import LAST
+from yehu_server.core.player.bowing import LAST_NOTE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.note_tables import OPEN_NOTES
 
@@ -74,7 +74,7 @@ def stops_of(notes: NoteRange) -> list[tuple[int, int]]:
     stops = []
     for string, (first, reach) in enumerate(zip(OPEN_NOTES, notes.reaches, strict=True)):
         above = notes.open_notes[string] - first
-        last = min(first + math.ceil(reach), LAST, notes.highest - above)
+        last = min(first + math.ceil(reach), LAST_NOTE, notes.highest - above)
         stops += [(string, note) for note in range(first, last + 1)]
     return stops
 

@@ -9,7 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.player.bowing import FIRST, LAST, PLACES, default_bowing_table
+from yehu_server.core.player.bowing import (
+    BOW_POSITIONS,
+    FIRST_NOTE,
+    LAST_NOTE,
+    default_bowing_table,
+)
 from yehu_server.params.table import STRING_NAMES
 from yehu_server.playing.bowing_tables import FORMAT, VERSION
 from yehu_server.util.files import write_bytes
@@ -30,11 +35,11 @@ def as_data(table: Array, rate: float) -> dict[str, Any]:
     bowing = {
         name: {
             str(place): {
-                str(FIRST + row): [round(float(value), 4) for value in table[string, i, row]]
-                for row in range(LAST - FIRST + 1)
+                str(FIRST_NOTE + row): [round(float(value), 4) for value in table[string, i, row]]
+                for row in range(LAST_NOTE - FIRST_NOTE + 1)
                 if not np.allclose(table[string, i, row], ordinary[string, i, row], atol=1e-4)
             }
-            for i, place in enumerate(PLACES)
+            for i, place in enumerate(BOW_POSITIONS)
         }
         for string, name in enumerate(STRING_NAMES)
     }

@@ -36,7 +36,7 @@ from yehu_lab.regimes.periods import (
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.physics.elementary import cos, log10, sin
-from yehu_server.core.player.ear import SEARCHED, STICKING, count_slips
+from yehu_server.core.player.ear import SEARCH_FRACTION, SLIP_END_FRACTION, count_slips
 from yehu_server.errors import ParameterError
 
 Array = Any
@@ -76,7 +76,7 @@ def name_regime(
     if motion < max(QUIET * speed, STILL) or sticking < SLIDING:
         return SILENT, NOWHERE
     shortest = max(2, math.ceil(SHORTEST * period))
-    before, after = (1.0 - SEARCHED) * period, (1.0 + SEARCHED) * period
+    before, after = (1.0 - SEARCH_FRACTION) * period, (1.0 + SEARCH_FRACTION) * period
     lag = first_peak(alike, shortest, math.ceil(before) - 1, EXACTLY)
     while lag != NOWHERE:
         if abs(slips * lag / period - 1.0) < ONE_EACH:
@@ -140,7 +140,7 @@ def share_of_sticking(slipping: Array, end: int, span: int) -> float:
     for i in range(end - span, end):
         largest = max(largest, slipping[i])
     for i in range(end - span, end):
-        if slipping[i] <= STICKING * largest:
+        if slipping[i] <= SLIP_END_FRACTION * largest:
             stuck += 1
     return stuck / span
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled, compiled_exactly
 from yehu_server.core.physics.elementary import exp
-from yehu_server.core.player.ear import SLIPPING, STICKING
+from yehu_server.core.player.ear import SLIP_BEGIN_FRACTION, SLIP_END_FRACTION
 
 Array = Any
 
@@ -129,9 +129,9 @@ def times_of_slips(
     for i in range(frames):
         size = slipping[i]
         largest = max(size, largest * fade)
-        least = max(SLIPPING * largest, LEAST_SLIP * abs(bow_velocity[i]), LEAST_SPEED)
+        least = max(SLIP_BEGIN_FRACTION * largest, LEAST_SLIP * abs(bow_velocity[i]), LEAST_SPEED)
         if is_slipping:
-            is_slipping = size > STICKING / SLIPPING * least
+            is_slipping = size > SLIP_END_FRACTION / SLIP_BEGIN_FRACTION * least
         elif size > least and bow_velocity[i] != 0.0:
             is_slipping = True
             if first < 0:

@@ -12,7 +12,7 @@ from typing import Any
 from yehu_server.compile.jit import Native
 from yehu_server.core.engine.snapshot import SNAPSHOT
 from yehu_server.core.midi import events, packing, tables
-from yehu_server.core.midi.record import PORTS
+from yehu_server.core.midi.record import PORT_COUNT
 from yehu_server.core.player import commands
 from yehu_server.params.table import TABLE
 
@@ -115,11 +115,11 @@ def header(
         commands=_table(commands),
         events=_table(events),
         kinds="\n".join(f"    YEHU_{kind.upper()} = {i}," for i, kind in enumerate(kinds)),
-        last_port=PORTS - 1,
-        byte=packing.BYTE,
-        twice=2 * packing.BYTE,
-        length_at=packing.LENGTH_AT,
-        port_at=packing.PORT_AT,
+        last_port=PORT_COUNT - 1,
+        byte=packing.BYTE_BITS,
+        twice=2 * packing.BYTE_BITS,
+        length_at=packing.LENGTH_SHIFT,
+        port_at=packing.PORT_SHIFT,
         parameters="\n".join(map(_parameter, range(len(TABLE)))),
         codes="\n".join(
             f"    YEHU_{group}_{name} = {getattr(tables, name)},"

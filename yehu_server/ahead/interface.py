@@ -31,10 +31,10 @@ from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.engine.snapshot import snapshot
 from yehu_server.core.midi.events import CONTROL, MESSAGE, TABLES_TO
-from yehu_server.core.midi.packing import BYTE, LENGTH_AT
+from yehu_server.core.midi.packing import BYTE_BITS, LENGTH_SHIFT
 from yehu_server.core.midi.record import MIDI, NONE
-from yehu_server.core.midi.tables import SLOTS, TABLES
-from yehu_server.core.midi.values import NO_KEY, find_values
+from yehu_server.core.midi.tables import TABLE_SLOTS, TABLES
+from yehu_server.core.midi.values import NO_KEY, resolve_values
 from yehu_server.core.physics.layout import STATE
 from yehu_server.core.player.commands import COMMAND, HOLD, RAMP, WRITE
 from yehu_server.core.player.notes import sounding_pitch
@@ -44,7 +44,7 @@ from yehu_server.core.player.parameter_indices import (
     PARAMETER_COUNT,
     SLOT_OF,
 )
-from yehu_server.core.player.record import MOST_HELD, PLAYER
+from yehu_server.core.player.record import MAX_HELD, PLAYER
 from yehu_server.core.stage.delay_lines import LINES
 from yehu_server.core.stage.record import STAGE, TAPE_AT
 
@@ -123,7 +123,7 @@ def midi(rig: Any, frame: int, data: Any, n: int) -> int:
         byte: Any = np.int64(read[i])
         if byte >= REAL_TIME:  # these come between the bytes of others, too
             if byte == SYSTEM_RESET:
-                reset = SYSTEM_RESET | 1 << LENGTH_AT
+                reset = SYSTEM_RESET | 1 << LENGTH_SHIFT
                 posted += post_to(rig, SERVER, frame, MESSAGE, reset, 0.0, 0.0)
         elif byte >= SYSTEM:
             wanted = 0
@@ -131,10 +131,10 @@ def midi(rig: Any, frame: int, data: Any, n: int) -> int:
             index, have = byte, 1
             wanted = 2 if 0xC0 <= byte < 0xE0 else 3
         elif wanted > 0:
-            index |= byte << BYTE * have
+            index |= byte << BYTE_BITS * have
             have += 1
             if have == wanted:
-                message = index | have << LENGTH_AT
+                message = index | have << LENGTH_SHIFT
                 posted += post_to(rig, SERVER, frame, MESSAGE, message, 0.0, 0.0)
                 wanted = 0
     return posted
@@ -165,7 +165,7 @@ def use_tables(rig: Any, frame: int, tables: Any, size: int) -> int:
         return 0
     # Nothing else is posted. Of three slots the next is neither in use nor the one before, which
     # the callback still reads while it changes.
-    slot = (last[0] + 1) % SLOTS
+    slot = (last[0] + 1) % TABLE_SLOTS
     given = carray(tables, (TABLES_BYTES // WORD,), np.float64)
     free = carray(at(rig, memory.TABLES_AT + slot * TABLES_BYTES), given.shape, np.float64)
     for i in range(len(given)):
@@ -263,14 +263,14 @@ def reset(rig: Any) -> None:
     if put(rig, m.rate, stage.channels, 1) == 0:
         return
     m.held, m.sounding, m.listed = 0, NONE, 0
-    for n in range(MOST_HELD):
+    for n in range(MAX_HELD):
         m.is_listed[n] = 0
     if m.has_last != 0:  # values as they are for no note, without its velocity
-        find_values(m, t, m.last_channel, NO_KEY)
+        resolve_values(m, t, m.last_channel, NO_KEY)
         for n in range(m.targets):
             index = m.target[n]
             if m.is_held[index] == 0:
-                m.value[index] = m.found_value[index]
+                m.value[index] = m.resolved_value[index]
     # The image has an event, for start values, which are not wanted here.
     carray(at(rig, memory.POSTED_AT), (1,), np.int64)[0] = 0
     last[0] = tables
@@ -312,7 +312,7 @@ FOLLOWING = [
 def functions(rates: Sequence[float], images: Sequence[Array], sources: str) -> list[Native]:
     """List all functions of the interface, for the images and the hash of sources given."""
     put, made_from = putting(rates, images), sources_function(sources)
-    beginning = [Native(prepare, calls=[put]), Native(reset, calls=[put, find_values])]
+    beginning = [Native(prepare, calls=[put]), Native(reset, calls=[put, resolve_values])]
     posting = [engine.post, midi, control, use_tables]
     reading = [frame, value, pitch, snapshot, lost]
     return [made_from, size, *beginning, *posting, process, *reading, *FOLLOWING]

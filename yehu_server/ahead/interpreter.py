@@ -19,13 +19,13 @@ from yehu_server.core.engine.atomics import at
 from yehu_server.core.engine.snapshot import SNAPSHOT
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.record import MIDI, prepare_midi
-from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.tables import TABLE_SLOTS, TABLES
 from yehu_server.params.table import TABLE
 
 Array = Any
 
 TABLES_AT = MIDI.itemsize
-BYTES = TABLES_AT + SLOTS * TABLES.itemsize
+BYTES = TABLES_AT + TABLE_SLOTS * TABLES.itemsize
 ANY_RATE = 48000.0  # Hz; only sections ask for theirs
 
 
@@ -74,7 +74,7 @@ INTERPRETER: tuple[Native, ...] = (interpreter_size, interpreter_prepare, interp
 
 # What a page reads and writes of the record of a part.
 OF_RECORD = (
-    "tables", "value", "found_value", "is_target",
+    "tables", "value", "resolved_value", "is_target",
     "out_kind", "out_index", "out_value", "out_other",
 )  # fmt: skip
 
@@ -99,7 +99,7 @@ def interpreter_layout() -> dict[str, Any]:
         "tables": _layout(TABLES, TABLES.names or ()),
         "tablesAt": TABLES_AT // WORD,
         "length": TABLES.itemsize // WORD,
-        "slots": SLOTS,
+        "slots": TABLE_SLOTS,
     }
 
 

@@ -14,14 +14,14 @@ import numpy as np
 
 from yehu_server.compile.jit import native
 from yehu_server.compile.memory import WORD, carray
-from yehu_server.core.midi.record import IN_PORT
+from yehu_server.core.midi.record import CHANNELS_PER_PORT
 from yehu_server.core.midi.tables import (
     BEND,
     CONTROL,
     EXPONENTIAL,
-    KEYS,
-    MOST_BINDS,
-    MOST_POINTS,
+    KEY_COUNT,
+    MAX_BINDS,
+    MAX_POINTS,
     NOTE,
     NRPN,
     PAIR,
@@ -30,7 +30,7 @@ from yehu_server.core.midi.tables import (
     TABLES,
     Tables,
 )
-from yehu_server.core.player.parameter_indices import HIGHEST, LOWEST, PARAMETER_COUNT
+from yehu_server.core.player.parameter_indices import LOWER_BOUNDS, PARAMETER_COUNT, UPPER_BOUNDS
 
 PAIRS, NRPNS = 32, 1 << 14
 MAX = 1e9
@@ -39,23 +39,23 @@ ANY, WHOLE, WHOLE_OR_NONE, ANY_OR_NONE = range(4)  # NaN stands for none
 SWITCHES = ("invert", "soft", "by_range", "for_all", "mpe", "is_equal", "has_programs")
 # What each field may hold: kind, lowest, highest.
 FIELDS = {
-    "binds": (WHOLE, 0, MOST_BINDS),
+    "binds": (WHOLE, 0, MAX_BINDS),
     "source": (WHOLE, 0, MAX),
-    "first": (WHOLE, 0, MOST_BINDS - 1),
+    "first": (WHOLE, 0, MAX_BINDS - 1),
     "target": (WHOLE, 0, PARAMETER_COUNT - 1),
     "lo": (ANY, -MAX, MAX),
     "hi": (ANY, -MAX, MAX),
     "curve": (WHOLE, 0, POINTS),
-    "first_point": (WHOLE, 0, MOST_POINTS),
-    "points": (WHOLE, 0, MOST_POINTS),
+    "first_point": (WHOLE, 0, MAX_POINTS),
+    "points": (WHOLE, 0, MAX_POINTS),
     "smoothing_ms": (ANY, 0, MAX),
-    "channels": (WHOLE, 0, (1 << IN_PORT) - 1),
+    "channels": (WHOLE, 0, (1 << CHANNELS_PER_PORT) - 1),
     "input_lo": (ANY, -1e307, 1e307),
     "input_hi": (ANY, -1e307, 1e307),
     "same": (ANY, -1e307, 1e307),
     "x": (ANY, 0, 1),
     "y": (ANY, 0, 1),
-    "first_switch": (WHOLE_OR_NONE, 0, KEYS - 1),
+    "first_switch": (WHOLE_OR_NONE, 0, KEY_COUNT - 1),
     "starts": (WHOLE, 0, PARAMETER_COUNT),
     "start_row": (WHOLE, 0, PARAMETER_COUNT - 1),
     "start_value": (ANY, -MAX, MAX),
@@ -64,7 +64,7 @@ FIELDS = {
     "policy": (WHOLE, 0, SKIP),
     "lowest": (ANY, -MAX, MAX),
     "highest": (ANY, -MAX, MAX),
-    "received": (WHOLE, -1, (1 << IN_PORT) - 1),
+    "received": (WHOLE, -1, (1 << CHANNELS_PER_PORT) - 1),
     "has_program": (WHOLE, 0, 1),
     "program_row": (WHOLE_OR_NONE, 0, PARAMETER_COUNT - 1),
     "program_value": (ANY, -MAX, MAX),
@@ -105,11 +105,11 @@ def check_values(t: Tables) -> int:
     """Return whether values are within the ranges of their parameters, once each field is right."""
     for n in range(int(t.starts)):
         index = int(t.start_row[n])
-        if not LOWEST[index] <= t.start_value[n] <= HIGHEST[index]:
+        if not LOWER_BOUNDS[index] <= t.start_value[n] <= UPPER_BOUNDS[index]:
             return 0
     for index in range(PARAMETER_COUNT):
         usual = t.usual[index]
-        if not LOWEST[index] <= usual <= HIGHEST[index] or 0.0 < usual < TINY:
+        if not LOWER_BOUNDS[index] <= usual <= UPPER_BOUNDS[index] or 0.0 < usual < TINY:
             return 0
     return 1
 
@@ -119,14 +119,19 @@ def check_binds(t: Tables) -> int:
     """Return whether sources and targets of binds are right, once each field is."""
     for n in range(int(t.binds)):
         source, index = int(t.source[n]), int(t.target[n])
-        is_change = source < KEYS or PAIR <= source < PAIR + PAIRS
+        is_change = source < KEY_COUNT or PAIR <= source < PAIR + PAIRS
         is_other = BEND <= source <= NOTE or NRPN <= source < NRPN + NRPNS or source >= CONTROL
         first = 0
         while int(t.source[first]) != source:
             first += 1
         if not (is_change or is_other) or int(t.first[n]) != first:
             return 0
-        if not LOWEST[index] <= min(t.lo[n], t.hi[n]) <= max(t.lo[n], t.hi[n]) <= HIGHEST[index]:
+        if (
+            not LOWER_BOUNDS[index]
+            <= min(t.lo[n], t.hi[n])
+            <= max(t.lo[n], t.hi[n])
+            <= UPPER_BOUNDS[index]
+        ):
             return 0
     return 1
 
@@ -141,7 +146,7 @@ def check_curves(t: Tables) -> int:
         if curve != POINTS:
             continue
         begin, end = int(t.first_point[n]), int(t.first_point[n] + t.points[n])
-        if end > MOST_POINTS or end - begin < 2:
+        if end > MAX_POINTS or end - begin < 2:
             return 0
         if t.x[begin] != 0.0 or t.x[end - 1] != 1.0:
             return 0

@@ -13,7 +13,7 @@ from typing import Any, Literal, Protocol
 
 from yehu_server.compile.jit import IS_PLAIN, Native
 from yehu_server.core.engine.warming import CALLED, COMPILING, warm_up
-from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
+from yehu_server.core.physics.grid import MAX_RATE, MIN_RATE
 from yehu_server.core.physics.quantities import Body, Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, find
@@ -63,7 +63,7 @@ def number(
 
 def rate_of(sample_rate: float) -> int:
     """Return a sample rate (Hz) that instruments have; raises ParameterError."""
-    return whole(sample_rate, "sample_rate", LOWEST_RATE, HIGHEST_RATE)
+    return whole(sample_rate, "sample_rate", MIN_RATE, MAX_RATE)
 
 
 def whole(value: Any, name: str, lo: float, hi: float) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
-from yehu_server.core.physics.time_loop import advance, advance_booked
+from yehu_server.core.physics.time_loop import advance, advance_with_ledger
 from yehu_server.errors import ParameterError
 from yehu_server.scores.gesture import Gesture, gesture_from, read_gesture, sample_rate
 from yehu_server.simulation.run import Simulation
@@ -67,7 +67,7 @@ def simulate(
     """
     found = gesture_of(gesture)
     every = whole(strings_every, "strings_every", 0, 2**31)
-    get_ready([advance_booked if energy else advance])
+    get_ready([advance_with_ledger if energy else advance])
     return run(found, energy=bool(energy), strings_every=every, progress=progress)
 
 

@@ -93,7 +93,7 @@ def players_of(
 def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[PartEntry]:
     """Name a part for each channel or track with notes."""
     from yehu_server.core.engine.rig import MOST_PARTS
-    from yehu_server.core.midi.channels import PERCUSSION
+    from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
     from yehu_server.scores.ensemble_file import PartEntry
     from yehu_server.scores.reading import channels_with_notes, part_name, tracks_with_notes
 
@@ -103,7 +103,7 @@ def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[Par
             for track in tracks_with_notes(scores)
         ]
     else:
-        chosen = arguments.channel or [each for each in range(16) if each != PERCUSSION]
+        chosen = arguments.channel or [each for each in range(16) if each != PERCUSSION_CHANNEL]
         found = [
             PartEntry("", name=part_name(scores, channel=channel), channel=channel)
             for channel in channels_with_notes(scores)
@@ -131,12 +131,12 @@ def _check_played(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
 
 def _warn_of_unplayed(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
     """Warn of channels that no part plays, where all parts are channels."""
-    from yehu_server.core.midi.channels import PERCUSSION
+    from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
     from yehu_server.scores.reading import channels_with_notes
 
     if any(entry.track is not None for entry in ensemble.parts):
         return
-    played = {entry.channel for entry in ensemble.parts} | {PERCUSSION}
+    played = {entry.channel for entry in ensemble.parts} | {PERCUSSION_CHANNEL}
     if left := [each for each in channels_with_notes(scores) if each not in played]:
         channels = ", ".join(str(each + 1) for each in left)
         warn(f"{ensemble.path}: no part plays channel {channels}")

@@ -232,9 +232,9 @@ def _page_of(arguments: argparse.Namespace) -> Any:
 
 
 def _rate(text: str) -> float:
-    from yehu_server.core.physics.grid import HIGHEST_RATE, LOWEST_RATE
+    from yehu_server.core.physics.grid import MAX_RATE, MIN_RATE
 
-    return within(text, LOWEST_RATE, HIGHEST_RATE, "Hz")
+    return within(text, MIN_RATE, MAX_RATE, "Hz")
 
 
 def _latency(text: str) -> str | float:

@@ -120,7 +120,7 @@ ARTICULATIONS: tuple[Articulation, ...] = (
         attack=0.4,
     ),
     Articulation(
-        "ricochet", "抛弓", "the bow is thrown and bounces, up to five times, ever sooner",
+        "ricochet", "抛弓", "the bow is thrown and bounces, up to five times, faster and faster",
         bow=(
             BowStep(speed=1.15, weight=1.1),
             BowStep(at_ms=50.0, ramp_ms=25.0, is_on=False),
@@ -159,7 +159,7 @@ ARTICULATIONS: tuple[Articulation, ...] = (
     ),
     Articulation("pizzicato", "拨弦", "the right hand plucks", is_plucked=True),
     Articulation(
-        "straight", "直音", "no vibrato, whatever else says so", vibrato=Vibrato(0.0),
+        "straight", "直音", "no vibrato, even where a parameter asks for it", vibrato=Vibrato(0.0),
     ),
     Articulation(
         "rolling-vibrato", "滚揉", "the finger rolls to both sides of the pitch",
@@ -203,12 +203,12 @@ ARTICULATIONS: tuple[Articulation, ...] = (
         fingers=(FingerStep(2.0, at_ms=70.0), FingerStep(0.0, at_ms=130.0)),
     ),
     Articulation(
-        "trill", "颤音", "another finger beats a second above, ever sooner",
+        "trill", "颤音", "another finger beats a second above, faster and faster",
         fingers=(FingerStep(2.0, at_ms=90.0), FingerStep(0.0, at_ms=160.0)),
         repeat_ms=150.0, speed_up=0.03,
     ),
     Articulation(
-        "wide-trill", "大颤音", "another finger beats a minor third above, ever sooner",
+        "wide-trill", "大颤音", "another finger beats a minor third above, faster and faster",
         fingers=(FingerStep(3.0, at_ms=90.0), FingerStep(0.0, at_ms=160.0)),
         repeat_ms=150.0, speed_up=0.03,
     ),

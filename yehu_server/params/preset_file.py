@@ -62,7 +62,7 @@ def document_of(name: Path | str, text: str = "") -> Document:
 def preset_from(document: Document, name: str) -> Preset:
     """Check and convert the entries of a preset file.
 
-    Raises PresetError where it is no preset, is of a newer version, or has wrong values: all of
+    Raises PresetError where it is not a preset, is of a newer version, or has wrong values: all of
     them are named.
     """
     table = document.toml()

@@ -75,7 +75,7 @@ class Param:
     def clamped(self, value: float) -> float:
         """Clamp a value to the range.
 
-        Raises ParameterError where the value is no finite number.
+        Raises ParameterError where the value is not a finite number.
         """
         try:
             return min(max(number(value), self.lo), self.hi)

@@ -90,7 +90,7 @@ TABLE: tuple[Param, ...] = (
     _controlled("/output/balance", "", "dB", -36.0, 36.0, 0.0,
         "Gain that makes this note as loud as the others of its velocity.", smooth_ms=20.0),
     _engine("/output/limiter", "", "dB", -24.0, 0.0, -3.0,
-        "Level above which peaks of the mix are bent, so that none exceeds -1 dB.",
+        "Level above which peaks of the mix are soft-clipped, so that none exceeds -1 dB.",
         smooth_ms=20.0, is_shared=True),
     _engine("/body/gain", "", "dB", -24.0, 24.0, 0.0,
         "Gain of the sound that the body radiates, before the blend.", smooth_ms=20.0),

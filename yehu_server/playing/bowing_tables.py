@@ -13,7 +13,13 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics.elementary import log
-from yehu_server.core.player.bowing import BOWING_SIZE, FIRST, LAST, PLACES, default_bowing_table
+from yehu_server.core.player.bowing import (
+    BOW_POSITIONS,
+    BOWING_SIZE,
+    FIRST_NOTE,
+    LAST_NOTE,
+    default_bowing_table,
+)
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
 from yehu_server.util.files import read_text
@@ -50,9 +56,9 @@ def table_of(data: Any) -> Array:
             raise ParameterError("is not a practice that this version knows; practise anew")
         for name, places in data["bowing"].items():
             for place, notes in places.items():
-                own = table[STRING_NAMES.index(name), PLACES.index(float(place))]
+                own = table[STRING_NAMES.index(name), BOW_POSITIONS.index(float(place))]
                 for note, values in notes.items():
-                    own[int(note) - FIRST] = _bowing_of(note, values)
+                    own[int(note) - FIRST_NOTE] = _bowing_of(note, values)
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
         raise ParameterError("is not a practice") from error
     return table
@@ -60,7 +66,7 @@ def table_of(data: Any) -> Array:
 
 def _bowing_of(note: str, values: Any) -> Array:
     bowing = np.array(values, np.float64)
-    if bowing.shape != (BOWING_SIZE,) or not FIRST <= int(note) <= LAST:
+    if bowing.shape != (BOWING_SIZE,) or not FIRST_NOTE <= int(note) <= LAST_NOTE:
         raise ParameterError(f"note {note}: expected {BOWING_SIZE} numbers")
     if not np.all((bowing >= LOWEST) & (bowing <= HIGHEST)):  # also refuses NaN
         raise ParameterError(f"note {note}: a value is out of range")

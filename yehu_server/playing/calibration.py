@@ -26,14 +26,14 @@ from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
     AT_LIGHT,
+    BOW_POSITIONS,
     DISTANCE_FACTOR,
     FIRM,
-    LEAST_PRESS,
     LIGHT,
-    PLACES,
+    MIN_PRESS,
     TOP_SPEED,
     at_pitch,
-    share,
+    bow_pressure_for,
 )
 from yehu_server.core.player.note_tables import (
     ABOVE,
@@ -105,7 +105,7 @@ def calibration_key(
     sources += [core / "engine" / f"{name}.py" for name in ("sounding", "output")]
     sources += [Path(__file__)]
     bowing = shipped_bowing_table(rate) if bowing is None else bowing
-    bowed = bowing[:, PLACES.index(DEFAULT_PLACE)].tolist()
+    bowed = bowing[:, BOW_POSITIONS.index(DEFAULT_PLACE)].tolist()
     return key_of(sources, repr((rate, a4, quantities, bowed)))
 
 
@@ -129,7 +129,7 @@ def calibrate(
     """
     bowing = shipped_bowing_table(rate) if bowing is None else bowing
     open_notes = notes_of(quantities).open_notes
-    usual = bowing[:, PLACES.index(DEFAULT_PLACE)]
+    usual = bowing[:, BOW_POSITIONS.index(DEFAULT_PLACE)]
     untuned = _Setup(rate, quantities, a4, usual, open_notes)
     jobs = [
         (string, pitch + untuned.above(string))
@@ -176,13 +176,13 @@ def _steady(setup: _Setup, string: int, pitch: float, speed: float, x_f: float |
     if x_f is not None:
         instrument.write("/finger/1/position", x_f, ramp_ms=0.0)
         instrument.write(
-            "/finger/1/press", max(PRESS, setup.bowing_value(string, pitch, LEAST_PRESS))
+            "/finger/1/press", max(PRESS, setup.bowing_value(string, pitch, MIN_PRESS))
         )
     columns = (AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, TOP_SPEED)
     flautando, light, firm, farther, fastest = (
         setup.bowing_value(string, pitch, c) for c in columns
     )
-    pressure = share(flautando, light, firm, 0.5 * (LIGHT + FIRM), string)
+    pressure = bow_pressure_for(flautando, light, firm, 0.5 * (LIGHT + FIRM), string)
     beta = farther * DEFAULT_PLACE
     instrument.write("/bow/noise", 0.0, ramp_ms=0.0)  # an even bow: the same at every try
     instrument.write("/bow/position", beta, ramp_ms=0.0)

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from platformdirs import user_config_path
 
-from yehu_server.core.midi.tables import MOST_BINDS, MOST_POINTS
+from yehu_server.core.midi.tables import MAX_BINDS, MAX_POINTS
 from yehu_server.errors import MappingError
 from yehu_server.playing.bind import Bind, Breakpoints, override_key
 from yehu_server.playing.mapping_file import MAX_BYTES, MappingFile, document_of, read_mapping_file
@@ -138,7 +138,7 @@ def _check_size(path: Path, mapping: Mapping) -> None:
     """Refuse a mapping that a part's tables have no room for."""
     curves = [bind.curve for bind in mapping.binds]
     points = sum(len(curve.points) for curve in curves if isinstance(curve, Breakpoints))
-    for what, count, most in (("binds", len(curves), MOST_BINDS), ("points", points, MOST_POINTS)):
+    for what, count, most in (("binds", len(curves), MAX_BINDS), ("points", points, MAX_POINTS)):
         if count > most:
             raise MappingError(f"{path}: {count} {what}, those of its bases too: at most {most}")
 

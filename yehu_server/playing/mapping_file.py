@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from yehu_server.core.midi.tables import MOST_BINDS
+from yehu_server.core.midi.tables import MAX_BINDS
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.params.articulations import ARTICULATIONS
@@ -161,7 +161,7 @@ def mapping_file_from(table: Fields) -> MappingFile:
         mpe=table.read("mpe", flag, None),
         key_switches=table.read("key_switches", whole, None, 0, LOWEST_NOTE - len(ARTICULATIONS)),
         start=read_settings(table.table("start")),
-        binds=tuple(filter(None, map(_bind, table.tables("bind", 0, MOST_BINDS)))),
+        binds=tuple(filter(None, map(_bind, table.tables("bind", 0, MAX_BINDS)))),
     )
     table.refuse_others()
     table.document.raise_errors()

@@ -13,7 +13,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, read_quantities
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.note_tables import NoteTables
-from yehu_server.core.player.velocity import NEUTRAL
+from yehu_server.core.player.velocity import NEUTRAL_VELOCITY
 from yehu_server.playing.bowing_tables import (
     ENDING,
     bowing_table_beside,
@@ -31,7 +31,7 @@ from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
 # Where a voice is followed. It varies by itself, so hands do not; as it sings, nobody can know its
 # attacks nor how hard they are, so the bow has quick ones of its own.
 STILL_HANDS = {"/playing/variation": 0.0, "/playing/vibrato": 0.0}
-AS_IT_SINGS = {**STILL_HANDS, "/playing/attack": 20.0, "/playing/velocity": NEUTRAL}
+AS_IT_SINGS = {**STILL_HANDS, "/playing/attack": 20.0, "/playing/velocity": NEUTRAL_VELOCITY}
 
 
 @dataclass(frozen=True)

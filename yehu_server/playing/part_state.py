@@ -19,7 +19,7 @@ from yehu_server.compile.jit import uncompiled
 from yehu_server.compile.memory import with_fields
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.midi.channels import plays
-from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE
+from yehu_server.core.midi.record import CHANNEL_COUNT, CHANNELS_PER_PORT, NONE
 from yehu_server.core.player.note_range import NoteRange
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.errors import ParameterError
@@ -202,7 +202,7 @@ class PartState:
         """Number of notes played on each channel; -1 for those of no MIDI port."""
         counts = self.record["notes_of"].tolist()
         found = {channel: count for channel, count in enumerate(counts) if count}
-        return Counter({-1 if c == CHANNELS else c: count for c, count in found.items()})
+        return Counter({-1 if c == CHANNEL_COUNT else c: count for c, count in found.items()})
 
     @property
     def percussion_notes(self) -> int:
@@ -257,12 +257,16 @@ class PartState:
 def _position(record: Any, bind: Bind, number: int, first: int) -> float | None:
     """Where a bind's source was last moved to, on any channel that it receives."""
     if is_address(bind.source):
-        return float(record["fader"][number]) if record["has_fader"][number] else None
-    channels = np.arange(CHANNELS)
+        return (
+            float(record["control_position"][number])
+            if record["has_control_position"][number]
+            else None
+        )
+    channels = np.arange(CHANNEL_COUNT)
     if bind.channels:
-        channels = channels[np.isin(channels % IN_PORT + 1, bind.channels)]
+        channels = channels[np.isin(channels % CHANNELS_PER_PORT + 1, bind.channels)]
     if bind.source in (VELOCITY, NOTE):
-        places = channels if bind.channels else np.arange(CHANNELS + 1)
+        places = channels if bind.channels else np.arange(CHANNEL_COUNT + 1)
         numbers = record["strike_number"][places]
         name = "strike_velocity" if bind.source == VELOCITY else "strike_key"
         positions = record[name][places] / (1.0 if bind.source == VELOCITY else STEPS)

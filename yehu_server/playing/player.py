@@ -18,7 +18,7 @@ from yehu_server.core.engine.rig import RIG_BYTES
 from yehu_server.core.midi import events
 from yehu_server.core.midi.packing import packed
 from yehu_server.core.midi.record import SECTION
-from yehu_server.core.midi.tables import SLOTS, plain_tables
+from yehu_server.core.midi.tables import TABLE_SLOTS, plain_tables
 from yehu_server.core.player import commands
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.preset_file import Preset
@@ -347,7 +347,7 @@ class Player(PartState):
                 self._change_tables(self.frame_of())
 
     def _change_tables(self, frame: int | None) -> None:
-        slot = (self._slot + 1) % SLOTS
+        slot = (self._slot + 1) % TABLE_SLOTS
         # Where the audio side still uses that slot, `finish_remap` comes back to it.
         self._has_stale_tables = int(self.record["tables"]) == slot
         if not self._has_stale_tables:

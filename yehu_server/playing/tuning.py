@@ -40,7 +40,7 @@ class RangePolicy(Enum):
         return None if math.isnan(playable) else playable
 
 
-KEYS = range(tables.KEYS)
+KEYS = range(tables.KEY_COUNT)
 MIDDLE_C, A4 = 60, 69
 # Hz; the pitches of a tuning that is fixed in Hz are stored relative to this A4.
 STANDARD_A4 = 440.0

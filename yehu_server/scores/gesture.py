@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics import layout
-from yehu_server.core.physics.grid import LOWEST_RATE
+from yehu_server.core.physics.grid import MIN_RATE
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.util.documents import Document, Fields
@@ -154,7 +154,7 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
 
 def sample_rate(value: Any) -> float:
     """A sample rate (Hz) that the model runs at; raises ParameterError."""
-    return number(value, LOWEST_RATE, HIGHEST_RATE, "Hz")
+    return number(value, MIN_RATE, HIGHEST_RATE, "Hz")
 
 
 def _pluck(table: Fields, bridge: float, shortest: float) -> Pluck:

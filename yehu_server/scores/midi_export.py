@@ -12,7 +12,7 @@ from fractions import Fraction
 
 import mido
 
-from yehu_server.core.player.gestures import FITS
+from yehu_server.core.player.gestures import STEPS_FRACTION
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind
@@ -152,7 +152,7 @@ class _Translation:
             return
         first, last = ARTICULATIONS[int(setting.value)].fingers
         channel, whole_s = setting.channel, 1e-3 * (last.at_ms + last.glide_ms)
-        pace = min(FITS * length_s / whole_s, 1.0)
+        pace = min(STEPS_FRACTION * length_s / whole_s, 1.0)
         yield from ((0.0, message) for message in self._range(channel))
         for point in range(SLIDE_POINTS + 1):
             share = point / SLIDE_POINTS

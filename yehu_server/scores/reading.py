@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from pkgutil import resolve_name
 
-from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.playing.options import PlayingOptions
@@ -32,7 +32,7 @@ def channels_with_notes(scores: Iterable[Score]) -> list[int]:
 
 def tracks_with_notes(scores: Iterable[Score]) -> list[int]:
     """The tracks that have notes, counted from 1, in order; percussion does not count."""
-    notes = (event for event in _notes(scores) if event.message.channel != PERCUSSION)
+    notes = (event for event in _notes(scores) if event.message.channel != PERCUSSION_CHANNEL)
     return sorted({event.track for event in notes})
 
 
@@ -51,7 +51,7 @@ def part_name(scores: Sequence[Score], channel: int | None = None, track: int | 
 
 def percussion_notes(scores: Iterable[Score]) -> int:
     """Number of notes on channel 10."""
-    return sum(event.message.channel == PERCUSSION for event in _notes(scores))
+    return sum(event.message.channel == PERCUSSION_CHANNEL for event in _notes(scores))
 
 
 def part_of(score: Score, channel: int | None = None, track: int | None = None) -> Score:

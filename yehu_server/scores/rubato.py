@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of
 
 # At full rubato: a beat at either end of a phrase is two thirds of this longer, one in its middle a
@@ -34,7 +34,9 @@ def midi_delays(score: Score, tune: Score) -> Delays:
 
     `tune` has the notes of the part that leads.
     """
-    notes, leading = ([n for n in notes_of(s) if n.channel != PERCUSSION] for s in (score, tune))
+    notes, leading = (
+        [n for n in notes_of(s) if n.channel != PERCUSSION_CHANNEL] for s in (score, tune)
+    )
     return delays_of(leading) if is_in_time(notes) else ()
 
 

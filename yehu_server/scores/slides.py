@@ -16,17 +16,17 @@ from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
-from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.physics.elementary import exp
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.gestures import BEARS_SLIDE, STEEP
 from yehu_server.core.player.note_range import NoteRange
 from yehu_server.core.player.phrasing import (
-    LEAST_LEAP,
     LONG_S,
-    SHORTEST_SLIDE_MS,
+    MAX_LEAP,
+    MIN_LEAP,
+    MIN_SLIDE_MS,
     SLIDE_MS,
-    WIDEST_LEAP,
 )
 from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
@@ -72,7 +72,7 @@ class _State(NamedTuple):
 def with_slides(score: Score, amount: float, playing: PlayingOptions) -> Score:
     """Return a score with slides over its leaps, as far as phrasing (0 to 1) says."""
     within = range_of(playing.quantities)
-    slide_s = 1e-3 * (SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * amount)
+    slide_s = 1e-3 * (MIN_SLIDE_MS + (SLIDE_MS - MIN_SLIDE_MS) * amount)
     slides = list(_slides(score, amount, playing, within))
     on_strings = {slide.note.begins for slide in slides if slide.string}
     before: dict[int, list[ScoreEvent]] = defaultdict(list)  # by the number of the event after
@@ -113,7 +113,7 @@ def _slides(
     score: Score, amount: float, playing: PlayingOptions, within: NoteRange
 ) -> Iterator[Slide]:
     """The slides over leaps that bow and fingers are free for."""
-    notes = [note for note in notes_of(score) if note.channel != PERCUSSION]
+    notes = [note for note in notes_of(score) if note.channel != PERCUSSION_CHANNEL]
     states = _states(score, playing, amount)
     for note, after in pairwise(notes):
         is_one = note.channel == after.channel and note.ends >= 0
@@ -122,7 +122,7 @@ def _slides(
             continue
         state, then = states[note.begins], states[after.begins]
         low, high = sorted(_pitch(each, playing, within) for each in (note, after))
-        is_leap = LEAST_LEAP < high - low < WIDEST_LEAP  # not where either is NaN
+        is_leap = MIN_LEAP < high - low < MAX_LEAP  # not where either is NaN
         if not is_leap or not _is_free(state) or not _is_free(then) or state.bends != then.bends:
             continue
         string = _string(low, high, (state, then), within)

@@ -35,7 +35,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 MAX_BYTES = 8 * 2**30
 # What is called, but for what playing calls, by the file that its machine code is kept in.
-COMPILED = {SIMULATING: (time_loop.advance_refined, time_loop.advance_booked)}
+COMPILED = {SIMULATING: (time_loop.advance_refined, time_loop.advance_with_ledger)}
 CHUNK = 1 << 14  # frames between two progress reports
 
 

@@ -16,7 +16,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, KINDS
 from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.core.stage.directivity import SIDES
-from yehu_server.core.stage.late_field import ROOM
+from yehu_server.core.stage.late_field import LATE_FIELD
 from yehu_server.core.stage.seat import SEAT
 
 RATE = 22050  # of those in a room
@@ -76,18 +76,18 @@ def duet() -> tuple[Ensemble, np.ndarray]:
 
 # Fields that are only prepared at the start: what they lose does not come back.
 PREPARED = {
-    *("rate", "move_step", "open_step", "close_step"),
+    *("rate", "crossfade_step", "move_step", "open_step", "close_step"),
     *("c_1", "c_2", "pass_a", "pass_b"),
 }
 
 
-@pytest.mark.parametrize("kind", [SEAT, SIDES, ROOM], ids=["a seat", "sides", "a room"])
+@pytest.mark.parametrize("kind", [SEAT, SIDES, LATE_FIELD], ids=["a seat", "sides", "a room"])
 def test_whatever_a_stage_holds_the_mix_is_finite_and_comes_back(duet, kind, everything):
     ensemble, memory = duet
     fields = {
         SEAT: ensemble.instruments[1]._rig["seat"],
         SIDES: ensemble.instruments[0]._rig["seat"]["sides"],
-        ROOM: ensemble._stage["room"],
+        LATE_FIELD: ensemble._stage["room"],
     }[kind]
     for field, bad in tried(of_floats(kind), everything):
         ensemble.memory[:] = memory

@@ -14,7 +14,7 @@ from yehu_server.core.engine.sleep import QUIET, WINDOW
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, END, HOLD, WRITE
 from yehu_server.core.player.parameter_indices import EXPRESSION, INDEX, TREMOLO
-from yehu_server.core.stage.seat import SPAN
+from yehu_server.core.stage.seat import HISTORY_FRAMES
 
 RATE = 44100.0
 FROM = 5000  # frame of the first event, by which all sleep
@@ -142,10 +142,10 @@ def test_it_wakes_as_if_it_had_been_computed_all_the_time():
         damp(one)
         one.write("/bow/speed", speed, ramp_ms=0.0)
         pluck(one, FROM)
-        pluck(one, 5 * SPAN)
-        out, counts = blocks(ensemble, 1024, 6, SPAN)
+        pluck(one, 5 * HISTORY_FRAMES)
+        out, counts = blocks(ensemble, 1024, 6, HISTORY_FRAMES)
         heard.append(out)
-        assert (counts[-1][0] > SPAN) == (speed == 0.0)
+        assert (counts[-1][0] > HISTORY_FRAMES) == (speed == 0.0)
         assert (counts[-1][0] == 0) == (speed != 0.0)
     assert np.abs(heard[0][FROM:]).max() > 1e-3
     np.testing.assert_allclose(heard[0], heard[1], rtol=1e-6, atol=1e-9)

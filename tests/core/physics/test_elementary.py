@@ -7,10 +7,10 @@ import pytest
 
 from yehu_server.core.physics import elementary
 from yehu_server.core.physics.elementary import (
-    SLIGHT,
+    SERIES_BELOW,
+    kernel_exp2,
+    kernel_sincospi,
     one_minus_inverse_root,
-    power_of_2,
-    sine_and_cosine,
 )
 from yehu_server.core.physics.power import INTERVALS, TABLES, power, prepare_power
 
@@ -21,18 +21,18 @@ ROUNDING = 1e-15
 
 def test_sine_and_cosine_are_the_c_librarys_for_a_quarter_turn_to_either_side():
     half_turns = np.linspace(-0.5, 0.5, 20_001)
-    found = np.array([sine_and_cosine(x) for x in half_turns])
+    found = np.array([kernel_sincospi(x) for x in half_turns])
     assert np.abs(found[:, 0] - np.sin(math.pi * half_turns)).max() <= ROUNDING
     assert np.abs(found[:, 1] - np.cos(math.pi * half_turns)).max() <= 3e-15
 
 
 def test_powers_of_two_are_the_c_librarys():
     x = np.concatenate([np.linspace(-890.0, 890.0, 10_001), np.linspace(-1.0, 1.0, 10_001)])
-    found = np.array([power_of_2(value) for value in x])
+    found = np.array([kernel_exp2(value) for value in x])
     assert np.abs(found / np.exp2(x) - 1.0).max() <= ROUNDING
-    assert power_of_2(-3.0) == 0.125
-    assert 0.0 < power_of_2(-1e9) < 1e-260  # as good as nothing
-    assert math.isnan(power_of_2(math.nan))
+    assert kernel_exp2(-3.0) == 0.125
+    assert 0.0 < kernel_exp2(-1e9) < 1e-260  # as good as nothing
+    assert math.isnan(kernel_exp2(math.nan))
 
 
 def test_a_slight_argument_is_exact_as_well():
@@ -40,7 +40,7 @@ def test_a_slight_argument_is_exact_as_well():
     found = np.array([one_minus_inverse_root(value) for value in t])
     root = np.sqrt(1.0 + t)
     assert np.abs(found / (t / (root * (1.0 + root))) - 1.0).max() <= ROUNDING
-    assert t.min() < SLIGHT < t.max()
+    assert t.min() < SERIES_BELOW < t.max()
     assert one_minus_inverse_root(0.0) == 0.0
 
 

@@ -8,7 +8,13 @@ from hypothesis import strategies as st
 from pitch import cents
 
 from yehu_server.core.physics import kernel, layout
-from yehu_server.core.physics.grid import overlap, place_cubic, place_linear, read, spread
+from yehu_server.core.physics.grid import (
+    cubic_weights,
+    interpolate,
+    linear_weights,
+    overlap,
+    spread,
+)
 from yehu_server.core.physics.quantities import Quantities, override
 
 YEHU = Quantities()
@@ -46,8 +52,8 @@ def test_cubic_weights_read_every_cubic_exactly_that_is_zero_at_the_ends_or_they
     any_cubic = np.polynomial.Polynomial(factors)
     inside = min(max(position, 2.0), N - 2.0)
     for cubic, at in ((tied, position), (any_cubic, inside)):
-        first, weights = placed(place_cubic, at, N)
-        value = read(on_grid(cubic(np.arange(N + 1.0) / N)), first, weights)
+        first, weights = placed(cubic_weights, at, N)
+        value = interpolate(on_grid(cubic(np.arange(N + 1.0) / N)), first, weights)
         assert value == pytest.approx(cubic(at / N), abs=1e-13)
 
 
@@ -56,15 +62,15 @@ def test_cubic_weights_read_every_cubic_exactly_that_is_zero_at_the_ends_or_they
 def test_linear_weights_read_every_line_exactly(contact, offset, slope):
     N, position = contact
     position = min(position, N - 1.5)
-    first, weights = placed(place_linear, position, N)
-    value = read(on_grid(offset + slope * np.arange(N + 1.0) / N), first, weights)
+    first, weights = placed(linear_weights, position, N)
+    value = interpolate(on_grid(offset + slope * np.arange(N + 1.0) / N), first, weights)
     assert value == pytest.approx(offset + slope * position / N, abs=1e-14)
     # ... and no more than two nodes, or a bow would not be a point between its neighbours.
     assert np.count_nonzero(weights) <= 2
 
 
 @few
-@given(contacts(), st.sampled_from([place_cubic, place_linear]), st.integers(0, 2**32 - 1))
+@given(contacts(), st.sampled_from([cubic_weights, linear_weights]), st.integers(0, 2**32 - 1))
 def test_spreading_is_the_transpose_of_reading_and_never_moves_the_fixed_ends(contact, place, seed):
     """<u, J f> = (I u) f: a force works on exactly the motion that it reads."""
     N, position = contact
@@ -72,22 +78,22 @@ def test_spreading_is_the_transpose_of_reading_and_never_moves_the_fixed_ends(co
     u = on_grid(np.random.default_rng(seed).normal(size=N + 1))
     pushed = np.zeros(layout.POINTS)
     spread(pushed, first, weights, 0.7)
-    assert u @ pushed == pytest.approx(0.7 * read(u, first, weights), abs=1e-13)
+    assert u @ pushed == pytest.approx(0.7 * interpolate(u, first, weights), abs=1e-13)
     assert pushed[: layout.GHOST + 1].tolist() == [0.0, 0.0]
     assert not pushed[layout.GHOST + N :].any()
 
 
 @few
-@given(contacts(), st.floats(0.0, 1.0), st.sampled_from([place_cubic, place_linear]))
+@given(contacts(), st.floats(0.0, 1.0), st.sampled_from([cubic_weights, linear_weights]))
 def test_overlap_is_what_one_contact_reads_of_the_other(contact, fraction, place):
     N, position = contact
     other = min(max(position + 8.0 * (fraction - 0.5), 1.0), N - 1.0)
-    first_p, weights_p = placed(place_cubic, position, N)
+    first_p, weights_p = placed(cubic_weights, position, N)
     first_q, weights_q = placed(place, other, N)
     pushed = np.zeros(layout.POINTS)
     spread(pushed, first_q, weights_q, 1.0)
     there = overlap(first_p, weights_p, first_q, weights_q)
-    assert there == pytest.approx(read(pushed, first_p, weights_p), abs=1e-14)
+    assert there == pytest.approx(interpolate(pushed, first_p, weights_p), abs=1e-14)
     assert there == pytest.approx(overlap(first_q, weights_q, first_p, weights_p), abs=1e-14)
 
 
@@ -118,7 +124,7 @@ def test_a_finger_keeps_one_node_from_the_loop_and_stays_before_the_bridge(x_f):
         nodes = np.arange(N + 1.0)
         curve = on_grid(nodes * (N - nodes) * (nodes + 3.0))
         c = run.state["contacts"]
-        found = read(curve, int(c["first"][0, i]), c["weights"][0, i])
+        found = interpolate(curve, int(c["first"][0, i]), c["weights"][0, i])
         assert found == pytest.approx(expected * (N - expected) * (expected + 3.0), rel=1e-9)
 
 

@@ -7,7 +7,7 @@ from held_notes import HOP, RATE, Playing
 from yehu_server.core.controls.record import (
     CENTS_DRIFT,
     FORCE_DRIFT,
-    PLACE_DRIFT,
+    POSITION_DRIFT,
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
@@ -56,7 +56,7 @@ def test_what_one_hand_does_goes_together(drifts):
     # Of the drifts CORRELATION, and the tremor is one; the tremor alone would make 0.25 to 0.36.
     for one, other in (
         (SPEED_DRIFT, FORCE_DRIFT),
-        (SPEED_DRIFT, PLACE_DRIFT),
+        (SPEED_DRIFT, POSITION_DRIFT),
         (CENTS_DRIFT, PRESS_DRIFT),
     ):
         parts = CORRELATION * DRIFT[one] * DRIFT[other] + TREMOR[one] * TREMOR[other]
@@ -68,7 +68,7 @@ def test_what_one_hand_does_goes_together(drifts):
 def test_without_variation_they_are_still():
     playing = Playing(variation=0.0)
     playing.on(74)
-    drift, length, width = playing.play(1.0, "drift", "sounding_drift", "vibrato_width")
+    drift, length, width = playing.play(1.0, "drift", "sounding_drift", "vibrato_depth_factor")
     assert (drift == 0.0).all()
     assert (length == 1.0).all()
     assert (width == 1.0).all()
@@ -86,7 +86,7 @@ def test_the_sound_is_the_same_for_a_seed_in_any_block_and_another_for_another()
 
 @pytest.mark.parametrize(
     ("address", "which"),
-    [("/bow/speed", SPEED_DRIFT), ("/bow/force", FORCE_DRIFT), ("/bow/position", PLACE_DRIFT)],
+    [("/bow/speed", SPEED_DRIFT), ("/bow/force", FORCE_DRIFT), ("/bow/position", POSITION_DRIFT)],
 )
 def test_what_somebody_else_moves_is_steady(address, which):
     playing = Playing(variation=1.0)

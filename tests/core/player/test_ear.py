@@ -7,10 +7,10 @@ import pytest
 from pitch import cents, hertz
 
 from yehu_server.core.player.ear import (
-    BEHIND,
+    DELAY_FRAMES,
     EAR,
     EAR_SAMPLES,
-    SURE,
+    PITCH_CERTAINTY,
     hear,
     prepare_ear,
     remember,
@@ -47,7 +47,7 @@ class Ear:
 
     def hear(self, expected_hz: float) -> tuple[float, float, float]:
         """The error (cents), certainty and slips of what was remembered last."""
-        hear(self.record, self._kept, self._frame + BEHIND, self.rate / expected_hz)
+        hear(self.record, self._kept, self._frame + DELAY_FRAMES, self.rate / expected_hz)
         return self.error, float(self.record["certainty"]), float(self.record["slips"])
 
     @property
@@ -108,7 +108,7 @@ def test_a_pitch_that_moves_slowly_is_followed_and_one_that_jumps_is_found_again
     assert np.abs(np.array(errors[20:100]) - glide[20:100]).max() < 1.5
     assert np.abs(np.array(errors[110:120]) - 40.0).max() < 0.5
     assert np.abs(np.array(errors[130:]) + 45.0).max() < 0.5
-    assert min(certainties[20:120] + certainties[130:]) > SURE
+    assert min(certainties[20:120] + certainties[130:]) > PITCH_CERTAINTY
 
 
 @pytest.mark.parametrize("rate", RATES)

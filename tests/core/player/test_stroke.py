@@ -6,14 +6,14 @@ from held_notes import HOP, RATE, Playing
 
 from yehu_server.core.controls.slots import SHARE
 from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
-from yehu_server.core.player.stroke import END, SLOWEST
+from yehu_server.core.player.stroke import END_FRACTION, MIN_SPEED_FACTOR
 
 LENGTH, SPEED = 0.7, 0.2
 
 
 def drawn(playing: Playing, seconds: float) -> tuple[np.ndarray, np.ndarray]:
     """The bow's speed (m/s) and the hair's place (m), every 5 ms."""
-    values, place = playing.play(seconds, "value", "place")
+    values, place = playing.play(seconds, "value", "bow_displacement")
     return values[:, SLOT_OF_SPEED], place
 
 
@@ -31,7 +31,7 @@ def test_a_bow_that_comes_to_its_end_turns_there():
     assert place.min() >= 0.0
     assert place.max() <= LENGTH
     between = np.diff(turns(speed))
-    assert between == pytest.approx((1.0 - 2.0 * END) * LENGTH / SPEED, rel=0.1)
+    assert between == pytest.approx((1.0 - 2.0 * END_FRACTION) * LENGTH / SPEED, rel=0.1)
 
 
 def test_a_change_within_a_note_is_a_dip_and_no_click():
@@ -66,7 +66,7 @@ def test_a_note_that_is_known_to_be_long_is_bowed_more_slowly():
     playing.on(74)
     speed, _ = drawn(playing, 5.0)
     assert len(turns(speed)) == 0
-    assert SLOWEST * SPEED <= speed.max() < 0.7 * SPEED
+    assert MIN_SPEED_FACTOR * SPEED <= speed.max() < 0.7 * SPEED
 
 
 def test_a_note_that_needs_more_hair_than_is_left_goes_the_other_way():

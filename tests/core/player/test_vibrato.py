@@ -9,7 +9,13 @@ from held_notes import Playing
 
 from yehu_server.core.controls.slots import DEPTH, UPWARD
 from yehu_server.core.physics.quantities import measured_body
-from yehu_server.core.player.vibrato_table import CENTRE, DEPTH_SHARE, LEAST, USUAL, vibrato_table
+from yehu_server.core.player.vibrato_table import (
+    CENTRE,
+    DEFAULT_DEPTH_CENTS,
+    DEPTH_SHARE,
+    MIN_DEPTH_CENTS,
+    vibrato_table,
+)
 from yehu_server.params.articulations import NUMBER
 
 A4, OPEN_NOTES = 440.0, (65, 72)
@@ -43,7 +49,7 @@ def test_on_the_flanks_of_a_peak_it_is_narrower_and_off_to_where_it_is_flatter()
     assert below[DEPTH_SHARE] < 0.8
     assert above[DEPTH_SHARE] < 0.8
     assert below[CENTRE] < 0.0 < above[CENTRE]
-    assert table[:, DEPTH_SHARE].min() >= LEAST / USUAL
+    assert table[:, DEPTH_SHARE].min() >= MIN_DEPTH_CENTS / DEFAULT_DEPTH_CENTS
 
 
 def played(note: int, **values: float) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.layout import new_record
 from yehu_server.core.stage.seat import (
     SEAT,
-    mute_when_closed,
+    mute_after_fade_out,
     prepare_seat,
     reflect,
     set_reflections,
@@ -42,7 +42,7 @@ def _place(
 
 @compiled_exactly
 def _silence(seat: Any) -> None:
-    mute_when_closed(seat[0])
+    mute_after_fade_out(seat[0])
 
 
 class Player:

@@ -50,7 +50,7 @@ def followed(
             pitch_or_value = other if int(kind) == BEGIN else value
             commands.append((time, LOUDER if is_louder else int(kind), pitch_or_value))
         times.append(time)
-        pitch.append(voice["heard"][0] if voice["is_open"][0] else math.nan)
+        pitch.append(voice["followed"][0] if voice["is_sounding"][0] else math.nan)
     return Followed(commands, np.array(times), np.array(pitch))
 
 

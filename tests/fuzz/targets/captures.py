@@ -6,7 +6,7 @@ import numpy as np
 from fuzz.instrument import Instrument
 from fuzz.target import scratch, target, words, written
 
-from yehu_server.core.controls.slots import HIGHEST, LOWEST, SILENCE
+from yehu_server.core.controls.slots import LOWER_BOUNDS, SILENCE, UPPER_BOUNDS
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.player.commands import KINDS, RAMP
@@ -53,8 +53,8 @@ def check_commands(taken: Capture) -> None:
     assert (commands["frame"] <= taken.frames).all()
     assert np.isfinite(commands["value"]).all()
     ramps = commands[(commands["kind"] == RAMP) & (commands["index"] != SILENCE)]
-    assert (ramps["value"] >= LOWEST[ramps["index"]]).all()
-    assert (ramps["value"] <= HIGHEST[ramps["index"]]).all()
+    assert (ramps["value"] >= LOWER_BOUNDS[ramps["index"]]).all()
+    assert (ramps["value"] <= UPPER_BOUNDS[ramps["index"]]).all()
     assert ((ramps["other"] >= 0) & (ramps["other"] <= MAX_FRAMES)).all()
     instrument = Instrument()
     for frame, *command in commands[:MOST_APPLIED].tolist():

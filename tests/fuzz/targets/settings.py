@@ -16,7 +16,7 @@ from yehu_server import cli
 from yehu_server.cli.config import parse
 from yehu_server.core.engine.rig import MOST_PARTS
 from yehu_server.core.midi.events import CONTROL
-from yehu_server.core.midi.tables import MOST_BINDS
+from yehu_server.core.midi.tables import MAX_BINDS
 from yehu_server.errors import EnsembleError, MappingError, ParameterError, PresetError
 from yehu_server.params.preset_file import SAVED
 from yehu_server.params.table import BY_ADDRESS, TABLE, find
@@ -152,7 +152,7 @@ def meant(contents: MappingFile) -> MappingFile:
 def check_controls(binds: tuple[Bind, ...]) -> None:
     """Check that named controls have positions within 0 to 1, whatever they are sent."""
     addresses = {bind.source for bind in binds if is_address(bind.source)}
-    if not addresses or len(binds) > MOST_BINDS:
+    if not addresses or len(binds) > MAX_BINDS:
         return
     leader, controls = Leader(), Controls()
     options = {"tuning": EQUAL, "a4": STANDARD_A4, "policy": RangePolicy.TRANSPOSE}
@@ -161,7 +161,7 @@ def check_controls(binds: tuple[Bind, ...]) -> None:
         for address in addresses:
             for argument in (0.0, 0.5, 1e30, -1e30):
                 leader.interpret(0, CONTROL, controls.number(address), argument, 0.0)
-                positions = leader.midi["fader"]
+                positions = leader.midi["control_position"]
                 assert ((positions >= 0.0) & (positions <= 1.0)).all(), address
 
 

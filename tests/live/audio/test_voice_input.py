@@ -64,6 +64,6 @@ def test_a_follower_has_the_notes_and_the_tuning_of_its_instrument():
     _, voice = stream._following(0, order)
     assert voice.dtype == FOLLOWER
     assert (voice["lowest"][0], voice["highest"][0]) == YEHU.ends
-    assert voice["sharper"][0] == pytest.approx(12.0 * math.log2(440.0 / 415.0))
+    assert voice["a4_offset"][0] == pytest.approx(12.0 * math.log2(440.0 / 415.0))
     assert (voice["transpose"][0], voice["correct"][0]) == (12.0, 0.5)
     assert np.array_equal(voice["tuning"][0], np.arange(128.0))

@@ -12,7 +12,7 @@ import pytest
 
 from yehu_server.core.midi import events
 from yehu_server.core.midi.record import MIDI
-from yehu_server.core.midi.tables import MOST_BINDS, TABLES
+from yehu_server.core.midi.tables import MAX_BINDS, TABLES
 from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.parameter_indices import INDEX, IS_ENGINES, IS_PLAYER_CONTROLLED
 from yehu_server.live.page import examples, facts
@@ -64,7 +64,7 @@ def test_each_mapping_is_there_and_leaves_room_for_what_may_be_learned(known):
         assert bound == [(bind.source, bind.target) for bind in mapping.binds]
         assert tuple(settings["start"].items()) == mapping.start
         assert (settings["mpe"], settings["about"]) == (mapping.mpe, mapping.about)
-        assert len(bound) + len(TABLE) <= MOST_BINDS
+        assert len(bound) + len(TABLE) <= MAX_BINDS
     assert known["defaultMapping"] in known["mappings"]
 
 

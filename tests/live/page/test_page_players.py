@@ -17,7 +17,7 @@ from yehu_server.core.player.commands import (
     WRITE,
 )
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.core.player.record import MOST_HELD
+from yehu_server.core.player.record import MAX_HELD
 from yehu_server.live.page.players import PagePlayers
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
@@ -75,9 +75,9 @@ def test_equal_keys_of_two_pages_are_two_and_one_holds_so_many_at_most(player, p
     assert len(player.held()) == 2
     pages.leave(0, 0)
     assert len(player.held()) == 1
-    for number in range(MOST_HELD + 50):
+    for number in range(MAX_HELD + 50):
         command(pages, 1, BEGIN, number, 69.0, 69.0)
-    assert len(player.held()) == MOST_HELD
+    assert len(player.held()) == MAX_HELD
 
 
 def test_values_for_a_note_come_before_it_are_known_and_its_pitch_is_as_the_page_tuned_it(

@@ -13,9 +13,9 @@ from yehu_server.core.controls.slots import (
     GAIN,
     LEVEL,
     LOSS,
-    LOWEST,
+    LOWER_BOUNDS,
     SILENCE,
-    SLOTS,
+    SLOT_COUNT,
     TUNING,
 )
 from yehu_server.core.physics.elementary import exp, exp10
@@ -47,7 +47,7 @@ def one_pole(y: float, x: float, a: float) -> float:
 
 
 @compiled
-def take(c: Any, slot: int, target: float, ramp: int) -> None:
+def start_ramp(c: Any, slot: int, target: float, ramp: int) -> None:
     """Begin a parameter's ramp to a target, clamped to its range.
 
     A target that is not a number is ignored. Real time: safe.
@@ -63,9 +63,9 @@ def take(c: Any, slot: int, target: float, ramp: int) -> None:
         if c.silence_in == 0:
             c.silence_in = c.fade
         return
-    if slot < 0 or slot >= SLOTS or math.isnan(target):
+    if slot < 0 or slot >= SLOT_COUNT or math.isnan(target):
         return
-    target = min(max(target, LOWEST[slot]), c.highest[slot])
+    target = min(max(target, LOWER_BOUNDS[slot]), c.upper_bounds[slot])
     c.target[slot] = target
     if ramp <= 0:
         c.value[slot] = target
@@ -80,27 +80,27 @@ def take(c: Any, slot: int, target: float, ramp: int) -> None:
 
 
 @compiled
-def move(c: Any) -> None:
+def advance_ramps(c: Any) -> None:
     """Advance all ramps by one sample; each ends exactly on its target. Real time: safe."""
-    place = np.uint64(0)
-    while place < np.uint64(c.moving_count):
-        slot = np.uint64(c.moving[place])
+    at = np.uint64(0)
+    while at < np.uint64(c.moving_count):
+        slot = np.uint64(c.moving[at])
         left = c.remaining[slot] - 1
         if left > 0:
             c.remaining[slot] = left
             c.value[slot] += c.slope[slot]
-            place += np.uint64(1)
+            at += np.uint64(1)
             continue
         if left == 0:  # else a jump ended the ramp
             c.value[slot] = c.target[slot]
         c.remaining[slot], c.is_moving[slot] = 0, 0
         c.moving_count -= 1
-        c.moving[place] = c.moving[np.uint64(c.moving_count)]
+        c.moving[at] = c.moving[np.uint64(c.moving_count)]
 
 
 FULL_SCALE_PRESSURE = 1.0  # Pa at full scale with no gain. By ear.
 TO_OUTPUT, TO_BODY, TO_LIMITER = range(3)  # gains that are set in decibels
-DECIBELS = 3
+GAIN_COUNT = 3
 
 
 @compiled

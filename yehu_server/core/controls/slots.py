@@ -33,7 +33,7 @@ STAGE_INPUTS = np.array([
     )
 ])  # fmt: skip
 SIZE_NOW, DECAY_NOW, DAMPING_NOW, LEVEL_NOW, DISTANCE_NOW, PAN_NOW, WIDTH_NOW = range(7)
-SLOTS = len(ENGINE)
-LOWEST = np.array([param.lo for param in ENGINE])
-HIGHEST = np.array([param.hi for param in ENGINE])
-SILENCE = SLOTS  # in place of a slot: fades the sound out and puts the model to rest
+SLOT_COUNT = len(ENGINE)
+LOWER_BOUNDS = np.array([param.lo for param in ENGINE])
+UPPER_BOUNDS = np.array([param.hi for param in ENGINE])
+SILENCE = SLOT_COUNT  # in place of a slot: fades the sound out and puts the model to rest

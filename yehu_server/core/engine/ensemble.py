@@ -15,7 +15,7 @@ from yehu_server.core.engine import native
 from yehu_server.core.engine.instrument import Instrument, new_memory
 from yehu_server.core.engine.rig import MOST_PARTS, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.stage.record import STAGE, TAPE, prepare_stage, rest_stage
+from yehu_server.core.stage.record import STAGE, TAPE, clear_stage, prepare_stage
 from yehu_server.errors import ParameterError
 
 Array = Any
@@ -150,13 +150,13 @@ class Ensemble:
         """Put all back to their start; drop all commands. Nothing may compute meanwhile."""
         for instrument in self.instruments:
             instrument.reset()
-        rest_stage(self._stage)
+        clear_stage(self._stage)
 
     def end_all(self) -> None:
         """End all notes and all sound at once. Nothing may compute meanwhile."""
         for instrument in self.instruments:
             instrument.end_all()
-        rest_stage(self._stage)
+        clear_stage(self._stage)
 
     def come_to_rest(self) -> None:
         """Put all models to rest at once, and move all parameters to their targets.
@@ -165,7 +165,7 @@ class Ensemble:
         """
         for instrument in self.instruments:
             instrument.come_to_rest()
-        rest_stage(self._stage)
+        clear_stage(self._stage)
 
     def recover(self) -> None:
         """Repair the state after a process was killed while it computed a block.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.controls.record import prepare_controls, settle
+from yehu_server.core.controls.record import jump_to_targets, prepare_controls
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine import native
 from yehu_server.core.engine.event_dispatch import interpret_events
@@ -24,7 +24,7 @@ from yehu_server.core.engine.output import prepare_output, rest_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.telemetry import METERS
-from yehu_server.core.midi.record import IN_PORT, clear_held, prepare_midi
+from yehu_server.core.midi.record import CHANNELS_PER_PORT, clear_held, prepare_midi
 from yehu_server.core.midi.tables import plain_tables
 from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.bow import friction_bound
@@ -33,8 +33,8 @@ from yehu_server.core.physics.layout import MAX_FINGERS, REFINED, new_record
 from yehu_server.core.physics.time_loop import kernel_of
 from yehu_server.core.player.commands import COMMAND, RAMP
 from yehu_server.core.player.record import end_all, prepare_player
-from yehu_server.core.stage.record import STAGE, prepare_stage, rest_stage
-from yehu_server.core.stage.seat import prepare_seat, rest_seat
+from yehu_server.core.stage.record import STAGE, clear_stage, prepare_stage
+from yehu_server.core.stage.seat import clear_seat, prepare_seat
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT, TABLE, find
 
@@ -121,7 +121,7 @@ class Instrument:
         prepare_output(rig["output"], self.rate)
         prepare_seat(rig["seat"][0], self.rate, spec.body)
         if self._stage is not None:
-            rest_stage(self._stage[0])
+            clear_stage(self._stage[0])
         mail = rig["mail"]
         kept = {name: mail[name].copy() for name in ("intake", "at_once", "reporting", "delay")}
         mail[:] = np.zeros(1, mail.dtype)
@@ -167,7 +167,7 @@ class Instrument:
         """
         midi = self._rig["midi"][0]
         self._rig["tables"][0, midi["tables"]] = tables[0]
-        midi["lower"] = IN_PORT - 1 if tables["mpe"][0] else 0
+        midi["lower"] = CHANNELS_PER_PORT - 1 if tables["mpe"][0] else 0
 
     @property
     def midi(self) -> Any:
@@ -316,11 +316,11 @@ class Instrument:
         rig = self._rig
         kernel.come_to_rest(rig["model"][0], rig["state"][0])
         refined.come_to_rest(rig["refined"][0])
-        settle(rig["controls"][0])
+        jump_to_targets(rig["controls"][0])
         rest_output(rig["output"])
-        rest_seat(rig["seat"][0])
+        clear_seat(rig["seat"][0])
         if self._stage is not None:
-            rest_stage(self._stage[0])
+            clear_stage(self._stage[0])
 
     def disable_pressure_correction(self) -> None:
         """Disable the pressure correction until the next reset."""

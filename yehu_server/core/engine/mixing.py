@@ -28,7 +28,7 @@ from yehu_server.core.engine.telemetry import METERS, TELEMETRY_S
 from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
 from yehu_server.core.stage.image_sources import EARS
-from yehu_server.core.stage.late_field import EVERY, is_settled, reverberate, set_room
+from yehu_server.core.stage.late_field import CHECK_FRAMES, is_settled, reverberate, set_room
 from yehu_server.core.stage.record import (
     BUSES,
     DIRECT,
@@ -42,11 +42,11 @@ from yehu_server.core.stage.seat import (
     LEFT,
     RIGHT,
     SEAT,
-    is_silent,
-    mute_when_closed,
+    mute_after_fade_out,
     reflect,
     set_direct,
     set_reflections,
+    update_silence,
 )
 
 Array = Any
@@ -118,9 +118,9 @@ def take_up(rigs: Any, sounded: Any, apart: int, part: int, first: int, frames: 
     s = record_at(rigs, part * RIG_BYTES + SEAT_AT, SEAT)
     for n in range(frames):
         own, room_inputs = o.stage_inputs[n], shared.stage_inputs[n]
-        is_time = (first + n) % EVERY == 0
+        is_time = (first + n) % CHECK_FRAMES == 0
         if is_time or math.isnan(s.direct[LEFT]):  # or has begun anew, wherever the block begins
-            set_direct(s, own[DISTANCE_NOW], own[PAN_NOW], EVERY)
+            set_direct(s, own[DISTANCE_NOW], own[PAN_NOW], CHECK_FRAMES)
         if is_time and stage.has_room != 0:
             set_reflections(
                 s,
@@ -131,7 +131,7 @@ def take_up(rigs: Any, sounded: Any, apart: int, part: int, first: int, frames: 
                 own[PAN_NOW],
             )
         x = o.dry[n]
-        if is_silent(s, x):
+        if update_silence(s, x):
             stage.own[n, LEFT], stage.own[n, RIGHT] = 0.0, 0.0
         else:
             side = 0.0
@@ -147,7 +147,7 @@ def take_up(rigs: Any, sounded: Any, apart: int, part: int, first: int, frames: 
         s.direct[LEFT] += s.direct_step[LEFT]
         s.direct[RIGHT] += s.direct_step[RIGHT]
         if n == o.silenced_at:
-            mute_when_closed(s)
+            mute_after_fade_out(s)
             stage.silenced_at = min(stage.silenced_at, n)
 
 
@@ -160,7 +160,7 @@ def add_room(stage: Any, inputs: Any, first: int, frames: int) -> None:
         return
     r, begin = stage.room, 0
     while begin < frames:
-        if (first + begin) % EVERY == 0:
+        if (first + begin) % CHECK_FRAMES == 0:
             row = inputs[begin]
             set_room(r, row[SIZE_NOW], row[DECAY_NOW], row[DAMPING_NOW])
         end = steady_until(r, inputs, first, begin, frames)
@@ -182,7 +182,7 @@ def steady_until(r: Any, inputs: Any, first: int, begin: int, frames: int) -> in
     """The row before which the room can be computed at once, from a row on: it stays as it is."""
     for n in range(begin + 1, frames):
         row = inputs[n]
-        if (first + n) % EVERY == 0 and not is_settled(
+        if (first + n) % CHECK_FRAMES == 0 and not is_settled(
             r, row[SIZE_NOW], row[DECAY_NOW], row[DAMPING_NOW]
         ):
             return n

@@ -25,7 +25,7 @@ from yehu_server.core.engine.mailbox import (
 from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.record import MIDI
-from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.tables import TABLE_SLOTS, TABLES
 from yehu_server.core.physics.layout import MODEL, REFINED, STATE, lined_up
 from yehu_server.core.player.commands import COMMAND
 from yehu_server.core.player.ear import EAR_SAMPLES
@@ -57,7 +57,7 @@ RIG = lined_up(
         ("page_ring", COMMAND, SMALL_RING),
         ("events", WAITING, QUEUE_SIZES.sum()),
         ("midi", MIDI),
-        ("tables", TABLES, SLOTS),
+        ("tables", TABLES, TABLE_SLOTS),
         ("heap", WAITING, HEAP),  # commands to come
         ("reports", COMMAND, RING),
         ("seat", SEAT),

@@ -12,14 +12,14 @@ import numpy as np
 
 from yehu_server.compile.jit import native
 from yehu_server.compile.memory import carray
-from yehu_server.core.controls.hands import bow_force, turned
+from yehu_server.core.controls.kernel_controls import bow_force, tremolo_factor
 from yehu_server.core.controls.record import CONTROLS, FORCE_DRIFT, SPEED_DRIFT
 from yehu_server.core.controls.slots import (
     FINGER_POSITION,
     FINGER_PRESS,
     POSITION,
     SIDE,
-    SLOTS,
+    SLOT_COUNT,
     SPEED,
 )
 from yehu_server.core.engine.atomics import record_at
@@ -72,7 +72,7 @@ SNAPSHOT = np.dtype(
         # grow with the speed; divide the upper one by beta, the lower by its square.
         ("upper", np.float64),  # N
         ("lower", np.float64),
-        ("targets", np.float64, SLOTS),  # values that the engine's parameters have or move to
+        ("targets", np.float64, SLOT_COUNT),  # values that the engine's parameters have or move to
         ("shapes", np.float64, (STRINGS, SHAPE_POINTS)),  # m; displacement, from loop to bridge
     ]
 )
@@ -109,11 +109,11 @@ def snapshot(rig: Any, into: Any) -> None:
     side = c.value[SIDE]
     string = 0 if side >= 0.0 else 1
     out.string = string if side != 0.0 else NO_STRING
-    out.speed = c.value[SPEED] * turned(c) * (1.0 + c.drift[SPEED_DRIFT])
+    out.speed = c.value[SPEED] * tremolo_factor(c) * (1.0 + c.drift[SPEED_DRIFT])
     out.force = abs(side) * bow_force(c, string, out.speed) * (1.0 + c.drift[FORCE_DRIFT])
-    out.beta = c.value[POSITION] * c.place_drift
+    out.beta = c.value[POSITION] * c.position_drift
     out.bow_x = c.bridge_x - out.beta * (c.bridge_x - c.sounding_from)
-    out.hair_place, out.hair_length = c.place, p.value[BOW_LENGTH]
+    out.hair_place, out.hair_length = c.bow_displacement, p.value[BOW_LENGTH]
     for j in range(MAX_FINGERS):
         out.finger_x[j] = c.value[FINGER_POSITION[j]]
         press = c.value[FINGER_PRESS[j]]
@@ -123,7 +123,7 @@ def snapshot(rig: Any, into: Any) -> None:
         Z, grip = math.sqrt(m.T[string] * m.rho_A[string]), m.mu_S - m.mu_C
         out.upper = upper_limit(Z, grip, 1.0, 1.0)
         out.lower = lower_limit(Z, grip, bridge_resistance(m, out.frequency), 1.0, 1.0)
-    for slot in range(SLOTS):
+    for slot in range(SLOT_COUNT):
         out.targets[slot] = c.target[slot]
     for i in range(STRINGS):
         for point in range(SHAPE_POINTS):

@@ -8,14 +8,14 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
-from yehu_server.core.controls.hands import advance_phases, is_still, write_controls
+from yehu_server.core.controls.kernel_controls import advance_phases, is_still, write_controls
 from yehu_server.core.controls.ramps import (
     TO_BODY,
     TO_LIMITER,
+    advance_ramps,
     amplitude,
     has_new_strings,
     level,
-    move,
 )
 from yehu_server.core.controls.record import CHUNK, CONTROLS
 from yehu_server.core.controls.slots import (
@@ -128,7 +128,7 @@ def retune(model: Array, state: Array, c: Any) -> None:
 @compiled_with_aliasing
 def write_row(c: Any, o: Any, n: int) -> bool:
     """Write row `n` of controls and gains; return whether the sound is faded out by then."""
-    move(c)
+    advance_ramps(c)
     write_controls(c, o.controls[n])
     gain, silenced = level(c), False
     if c.silence_in > 0:

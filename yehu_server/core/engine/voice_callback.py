@@ -15,9 +15,9 @@ from yehu_server.core.engine.atomics import pointer, record_at
 from yehu_server.core.engine.mailbox import SOUND_INPUT
 from yehu_server.core.engine.native import post_to
 from yehu_server.core.engine.processor import flush_denormals, monotonic_ns, restore_denormals
-from yehu_server.core.midi.tables import KEYS
-from yehu_server.core.voice.note_detection import FOLLOWER, decide, end, prepare_follower
-from yehu_server.core.voice.pitch_detection import take
+from yehu_server.core.midi.tables import KEY_COUNT
+from yehu_server.core.voice.note_detection import FOLLOWER, end, prepare_follower, update_note
+from yehu_server.core.voice.pitch_detection import push_sample
 
 FOLLOWER_BYTES = FOLLOWER.itemsize
 COMMAND_NUMBERS = 4  # numbers of a request for others: kind, index, value, other
@@ -44,7 +44,7 @@ def voice_prepare(voice: Any, rate: float, transpose: float, correct: float) -> 
 def voice_tune(voice: Any, key: int, pitch: float) -> None:
     """Set the pitch of a key, 0 to 127, to which what is played is moved; NaN for none."""
     f = record_at(voice, 0, FOLLOWER)
-    if 0 <= key < KEYS:
+    if 0 <= key < KEY_COUNT:
         f.tuning[key] = pitch
 
 
@@ -52,7 +52,7 @@ def voice_tune(voice: Any, key: int, pitch: float) -> None:
 def voice_pitch(voice: Any) -> float:
     """The pitch of the voice that is followed (fractional MIDI note); NaN for none."""
     f = record_at(voice, 0, FOLLOWER)
-    return float(f.heard if f.is_open != 0 else np.nan)
+    return float(f.followed if f.is_sounding != 0 else np.nan)
 
 
 @native
@@ -73,8 +73,8 @@ def follow_voice(voice: Any, sound: Any, frames: int, into: Any, most: int) -> i
         end(f)
         found = copy_commands(f, commands, 0)
     for i in range(frames):
-        if take(f.hearing, samples[i]):
-            decide(f)
+        if push_sample(f.detector, samples[i]):
+            update_note(f)
             found = copy_commands(f, commands, found)
     return found
 
@@ -113,8 +113,8 @@ def follow_input(
     rig = pointer(f.rig)
     samples = carray(sound, (np.int64(frames),), np.float32)
     for i in range(len(samples)):
-        if take(f.hearing, samples[i]):
-            decide(f)
+        if push_sample(f.detector, samples[i]):
+            update_note(f)
             for n in range(f.commands):
                 post_to(rig, SOUND_INPUT, now, f.kind[n], f.index[n], f.value[n], f.other[n])
     restore_denormals(mode)

@@ -14,10 +14,10 @@ from yehu_server.core.midi.channels import begin_port, forget_channel, plays
 from yehu_server.core.midi.control_changes import change_control
 from yehu_server.core.midi.note_ends import end_all
 from yehu_server.core.midi.notes import end_channel, note_off, note_on
-from yehu_server.core.midi.packing import BYTE, LENGTH_AT, PORT_AT
-from yehu_server.core.midi.record import CHANNELS, IN_PORT, PORTS, Midi
+from yehu_server.core.midi.packing import BYTE_BITS, LENGTH_SHIFT, PORT_SHIFT
+from yehu_server.core.midi.record import CHANNEL_COUNT, CHANNELS_PER_PORT, PORT_COUNT, Midi
 from yehu_server.core.midi.resets import disconnect_channel, forget_all_moves
-from yehu_server.core.midi.sources import move, press_key, set_directly
+from yehu_server.core.midi.sources import move_poly_pressure, move_source, set_directly
 from yehu_server.core.midi.tables import BEND, PRESSURE, Tables
 from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 
@@ -33,17 +33,17 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
 
     Each port has 16 channels of its own.
     """
-    length, port = index >> LENGTH_AT & 0xFF, index >> PORT_AT
-    status, one, two = index & 0xFF, index >> BYTE & 0xFF, index >> 2 * BYTE & 0xFF
+    length, port = index >> LENGTH_SHIFT & 0xFF, index >> PORT_SHIFT
+    status, one, two = index & 0xFF, index >> BYTE_BITS & 0xFF, index >> 2 * BYTE_BITS & 0xFF
     m.messages += 1
-    if not 0 <= port < PORTS or length == 0 or status < NOTE_OFF:
+    if not 0 <= port < PORT_COUNT or length == 0 or status < NOTE_OFF:
         count_malformed(m, index)
         return
     if status >= SYSTEM:
         if status == SYSTEM_RESET and length == 1:
             system_reset(m, t, frame)
         return
-    kind, channel = status & 0xF0, IN_PORT * port + (status & 0x0F)
+    kind, channel = status & 0xF0, CHANNELS_PER_PORT * port + (status & 0x0F)
     wanted = 2 if kind in (PROGRAM_CHANGE, CHANNEL_PRESSURE) else 3
     if length != wanted or one >= NOTE_OFF or (wanted == 3 and two >= NOTE_OFF):
         count_malformed(m, index)
@@ -57,11 +57,11 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
         note_off(m, t, frame, channel, float(one))
     elif kind == PITCH_BEND:
         bend = max(-1.0, ((two << 7 | one) - 8192) / 8191.0)
-        move(m, t, frame, BEND, channel, 0.5 * (bend + 1.0))
+        move_source(m, t, frame, BEND, channel, 0.5 * (bend + 1.0))
     elif kind == CHANNEL_PRESSURE:
-        move(m, t, frame, PRESSURE, channel, one / 127.0)
+        move_source(m, t, frame, PRESSURE, channel, one / 127.0)
     elif kind == POLY_PRESSURE:
-        press_key(m, t, frame, channel, one, two / 127.0)
+        move_poly_pressure(m, t, frame, channel, one, two / 127.0)
     elif kind == CONTROL_CHANGE:
         change_control(m, t, frame, channel, one, two)
     else:
@@ -70,7 +70,7 @@ def receive(m: Any, t: Any, frame: int, index: int) -> None:
 
 @compiled_exactly
 def count_malformed(m: Any, index: int) -> None:
-    """Count what is no message, and keep it for `status` to report."""
+    """Count an invalid message, and store it for `status` to report."""
     m.malformed += 1
     m.malformed_last = index
 
@@ -108,9 +108,9 @@ def change_program(m: Any, t: Any, frame: int, channel: int, program: int) -> No
 @compiled_exactly
 def disconnect(m: Any, t: Any, frame: int, port: int) -> None:
     """End the notes of a port that is gone; see `disconnect_channel`."""
-    if not 0 <= port < PORTS:
+    if not 0 <= port < PORT_COUNT:
         return
-    for channel in range(IN_PORT * port, IN_PORT * (port + 1)):
+    for channel in range(CHANNELS_PER_PORT * port, CHANNELS_PER_PORT * (port + 1)):
         end_channel(m, t, frame, channel)
         disconnect_channel(m, t, frame, channel)
     begin_port(m, t, port)
@@ -120,8 +120,8 @@ def disconnect(m: Any, t: Any, frame: int, port: int) -> None:
 def system_reset(m: Midi, t: Tables, frame: int) -> None:
     """End all notes, and forget pedals, zones and moves."""
     end_all(m, t, frame)
-    for channel in range(CHANNELS):
+    for channel in range(CHANNEL_COUNT):
         forget_channel(m, channel)
-    for port in range(PORTS):
+    for port in range(PORT_COUNT):
         begin_port(m, t, port)
     forget_all_moves(m, frame)

@@ -12,14 +12,14 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE
-from yehu_server.core.midi.tables import MOST_BINDS
+from yehu_server.core.midi.record import CHANNEL_COUNT, CHANNELS_PER_PORT, NONE
+from yehu_server.core.midi.tables import MAX_BINDS
 from yehu_server.core.player.parameter_indices import INDEX
 
 LOWER_MASTER, UPPER_MASTER = 0, 15  # in a port
-MOST_MEMBERS = 15
+MAX_MEMBERS = 15
 MEMBER_BEND, MASTER_BEND = 48.0, 2.0  # semitones, until RPN 0 sets another range
-PERCUSSION = 9  # channel 10, counted from 0
+PERCUSSION_CHANNEL = 9  # channel 10, counted from 0
 ALL_BUT_PERCUSSION = -1  # of channels that are received
 BEND_RANGE = INDEX["/playing/bend_range"]
 
@@ -27,7 +27,7 @@ BEND_RANGE = INDEX["/playing/bend_range"]
 @compiled_exactly
 def is_midi(channel: int) -> bool:
     """Whether a channel is one of a port."""
-    return 0 <= channel < CHANNELS
+    return 0 <= channel < CHANNEL_COUNT
 
 
 # -- MPE zones ------------------------------------------------------------------------------------
@@ -36,7 +36,7 @@ def is_midi(channel: int) -> bool:
 @compiled_exactly
 def begin_port(m: Any, t: Any, port: int) -> None:
     """Give a port the zones that it starts with: none, or one of all channels."""
-    m.lower[port] = MOST_MEMBERS if t.mpe != 0.0 else 0
+    m.lower[port] = MAX_MEMBERS if t.mpe != 0.0 else 0
     m.upper[port] = 0
 
 
@@ -46,9 +46,9 @@ def configure_zone(m: Any, channel: int, members: int) -> bool:
 
     Where two zones overlap, the one configured last keeps its channels.
     """
-    port, own = channel // IN_PORT, channel % IN_PORT
-    members = min(members, MOST_MEMBERS)
-    room = max(MOST_MEMBERS - 1 - members, 0)  # left for the other zone, between the two masters
+    port, own = channel // CHANNELS_PER_PORT, channel % CHANNELS_PER_PORT
+    members = min(members, MAX_MEMBERS)
+    room = max(MAX_MEMBERS - 1 - members, 0)  # left for the other zone, between the two masters
     if own == LOWER_MASTER:
         m.lower[port] = members
         m.upper[port] = min(m.upper[port], room)
@@ -63,11 +63,11 @@ def master_of(m: Any, channel: int) -> int:
     """The master channel of a member of an MPE zone; NONE for any other channel."""
     if not is_midi(channel):
         return NONE
-    port, own = channel // IN_PORT, channel % IN_PORT
+    port, own = channel // CHANNELS_PER_PORT, channel % CHANNELS_PER_PORT
     if LOWER_MASTER < own <= m.lower[port]:
-        return IN_PORT * port + LOWER_MASTER
+        return CHANNELS_PER_PORT * port + LOWER_MASTER
     if UPPER_MASTER - m.upper[port] <= own < UPPER_MASTER:
-        return IN_PORT * port + UPPER_MASTER
+        return CHANNELS_PER_PORT * port + UPPER_MASTER
     return NONE
 
 
@@ -87,7 +87,7 @@ def bend_range(m: Any, channel: int) -> float:
         return float(m.bend_range[channel])
     if master_of(m, channel) != NONE:
         return MEMBER_BEND
-    port, own = channel // IN_PORT, channel % IN_PORT
+    port, own = channel // CHANNELS_PER_PORT, channel % CHANNELS_PER_PORT
     is_lower = own == LOWER_MASTER and m.lower[port] > 0
     is_upper = own == UPPER_MASTER and m.upper[port] > 0
     return MASTER_BEND if is_lower or is_upper else float(usual)
@@ -99,11 +99,11 @@ def bend_range(m: Any, channel: int) -> float:
 @compiled_exactly
 def plays(m: Any, t: Any, channel: int) -> bool:
     """Whether the notes of a MIDI channel are played."""
-    own = channel % IN_PORT
+    own = channel % CHANNELS_PER_PORT
     received = int(t.received)
     if received != ALL_BUT_PERCUSSION:
         return received >> own & 1 != 0
-    return own != PERCUSSION or master_of(m, channel) != NONE
+    return own != PERCUSSION_CHANNEL or master_of(m, channel) != NONE
 
 
 @compiled_exactly
@@ -113,7 +113,7 @@ def moves_all(m: Any, t: Any, channel: int, is_global: bool) -> bool:
     They are if its port has played no note, as of a box of pedals or faders, or if their bind is
     global. But a member channel of an MPE zone belongs to one note, and so do its moves.
     """
-    if not is_global and m.is_keyboard[channel // IN_PORT] != 0:
+    if not is_global and m.is_keyboard[channel // CHANNELS_PER_PORT] != 0:
         return False
     if master_of(m, channel) != NONE:
         return False
@@ -145,7 +145,7 @@ def forget_channel(m: Any, channel: int) -> None:
 def forget_moves(m: Any, channel: int) -> None:
     """Forget all moves on a channel."""
     if m.is_active[channel] != 0:
-        for bind in range(MOST_BINDS):
+        for bind in range(MAX_BINDS):
             m.move_number[channel, bind] = m.taken_number[channel, bind] = 0
         for key in range(m.pressure_number.shape[1]):
             m.pressure_number[channel, key] = 0

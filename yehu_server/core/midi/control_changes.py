@@ -12,14 +12,14 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import is_in_zone, plays
 from yehu_server.core.midi.emit_commands import stop_sound
 from yehu_server.core.midi.note_ends import (
-    SUSTAIN,
+    SUSTAIN_CONTROL,
     end_notes,
     hold_by_pedal,
     lift_pedal,
     list_channel,
 )
 from yehu_server.core.midi.part_keys import list_key
-from yehu_server.core.midi.record import IN_PORT, NONE, Midi
+from yehu_server.core.midi.record import CHANNELS_PER_PORT, NONE, Midi
 from yehu_server.core.midi.registered_parameters import (
     DATA_ENTRY,
     DATA_ENTRY_FINE,
@@ -33,10 +33,11 @@ from yehu_server.core.midi.registered_parameters import (
     select,
 )
 from yehu_server.core.midi.resets import reset_controllers
-from yehu_server.core.midi.sources import move, move_coarse, move_fine
+from yehu_server.core.midi.sources import move_source, move_source_coarse, move_source_fine
 from yehu_server.core.midi.tables import PAIR, Tables
 
-# Control changes with a meaning of their own, beside SUSTAIN and those of registered parameters.
+# Control changes with a meaning of their own, beside SUSTAIN_CONTROL and those of registered
+# parameters.
 BANK, BANK_FINE = 0, 32
 ALL_SOUND_OFF, RESET_CONTROLLERS, ALL_NOTES_OFF = 120, 121, 123
 PAIRS = 32  # controllers with a fine half, as many higher
@@ -51,7 +52,7 @@ def change_control(m: Midi, t: Tables, frame: int, channel: int, control: int, v
         m.bank[channel] = value
     elif control == BANK_FINE:
         m.bank_fine[channel] = value
-    if control == SUSTAIN and not is_bound(t, SUSTAIN):
+    if control == SUSTAIN_CONTROL and not is_bound(t, SUSTAIN_CONTROL):
         m.sustain[channel] = 1 if value >= 64 else 0
         if value < 64:
             lift_pedal(m, t, frame, channel)
@@ -75,8 +76,8 @@ def change_control(m: Midi, t: Tables, frame: int, channel: int, control: int, v
 @compiled_exactly
 def reset_sustain(m: Any, t: Any, frame: int, channel: int) -> None:
     """Lift the sustain pedal, or what is bound to it."""
-    if is_bound(t, SUSTAIN):
-        move_both(m, t, frame, channel, SUSTAIN, 0)
+    if is_bound(t, SUSTAIN_CONTROL):
+        move_both(m, t, frame, channel, SUSTAIN_CONTROL, 0)
     else:
         lift_pedal(m, t, frame, channel)
 
@@ -84,11 +85,11 @@ def reset_sustain(m: Any, t: Any, frame: int, channel: int) -> None:
 @compiled_exactly
 def move_both(m: Any, t: Any, frame: int, channel: int, control: int, value: int) -> None:
     """Move the sources of a control change: the 7-bit one, then the 14-bit pair."""
-    move(m, t, frame, control, channel, value / 127.0)
+    move_source(m, t, frame, control, channel, value / 127.0)
     if control < PAIRS:
-        move_coarse(m, t, frame, PAIR + control, channel, value)
+        move_source_coarse(m, t, frame, PAIR + control, channel, value)
     elif control < 2 * PAIRS:
-        move_fine(m, t, frame, PAIR + control - PAIRS, channel, value)
+        move_source_fine(m, t, frame, PAIR + control - PAIRS, channel, value)
 
 
 @compiled_exactly
@@ -114,9 +115,9 @@ def all_sound_off(m: Any, t: Any, frame: int, channel: int) -> None:
 @compiled_exactly
 def list_zone(m: Any, channel: int) -> None:
     """List the keys of a channel and, where it is a master, of its members."""
-    first = IN_PORT * (channel // IN_PORT)
+    first = CHANNELS_PER_PORT * (channel // CHANNELS_PER_PORT)
     list_channel(m, channel)
-    for member in range(first, first + IN_PORT):
+    for member in range(first, first + CHANNELS_PER_PORT):
         if member != channel and is_in_zone(m, member, channel):
             list_channel(m, member)
 

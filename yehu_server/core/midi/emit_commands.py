@@ -27,7 +27,12 @@ from yehu_server.core.midi.section_players import (
     begin_sequence,
 )
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
-from yehu_server.core.player.parameter_indices import HIGHEST, IS_PLAYER_CONTROLLED, LOWEST, SEED
+from yehu_server.core.player.parameter_indices import (
+    IS_PLAYER_CONTROLLED,
+    LOWER_BOUNDS,
+    SEED,
+    UPPER_BOUNDS,
+)
 
 # -- parameters -----------------------------------------------------------------------------------
 
@@ -35,7 +40,7 @@ from yehu_server.core.player.parameter_indices import HIGHEST, IS_PLAYER_CONTROL
 @compiled_exactly
 def in_range(index: int, value: float) -> float:
     """The value nearest to one that a parameter can have."""
-    return float(min(max(value, LOWEST[index]), HIGHEST[index]))
+    return float(min(max(value, LOWER_BOUNDS[index]), UPPER_BOUNDS[index]))
 
 
 @compiled_exactly
@@ -92,7 +97,7 @@ def write(
 
 
 @compiled_exactly
-def express(m: Any, frame: int, index: int, value: float) -> None:
+def set_for_next_note(m: Any, frame: int, index: int, value: float) -> None:
     """Set a parameter for the note that begins next, or sounds again."""
     if m.is_held[index] != 0:
         return
@@ -106,7 +111,7 @@ def express(m: Any, frame: int, index: int, value: float) -> None:
 @compiled_exactly
 def release_held(m: Any) -> None:
     """Hold no parameter any more."""
-    for index in range(len(LOWEST)):
+    for index in range(len(LOWER_BOUNDS)):
         m.is_held[index] = 0
 
 
@@ -117,7 +122,7 @@ def release_held(m: Any) -> None:
 def begin_key(
     m: Midi, frame: int, channel: int, key: float, pitch: float, velocity: float, strike_number: int
 ) -> None:
-    """Begin a note at a pitch within range; what was given to `express` before is for it."""
+    """Begin a note at a pitch within range; what `set_for_next_note` was given applies to it."""
     again = NONE
     before = find_key(m, channel, key)
     if before != NONE:
@@ -134,7 +139,7 @@ def begin_key(
 def end_listed(m: Midi, frame: int) -> None:
     """End the keys that are listed, all at once; of those still held the last sounds again.
 
-    What was given to `express` before is for that one.
+    What was given to `set_for_next_note` before is for that one.
     """
     if m.listed == 0:
         return
@@ -180,7 +185,7 @@ def record_command(m: Any, kind: int, index: int, value: float, other: float) ->
         if value == 0.0:
             release_held(m)
     elif kind == STOP and value != 0.0:
-        hold_nothing(m)
+        clear_held_keys(m)
 
 
 @compiled_exactly
@@ -191,7 +196,7 @@ def stop_sound(m: Any, frame: int, is_panic: bool) -> None:
 
 
 @compiled_exactly
-def hold_nothing(m: Any) -> None:
+def clear_held_keys(m: Any) -> None:
     """Forget all held keys, whose sound ends."""
     m.held, m.sounding, m.listed, m.values = 0, NONE, 0, 0
     m.chord, m.is_divided = 0, 0

@@ -1,4 +1,4 @@
-"""Interprets events: what each comes to, for whoever plays the part. Compiled."""
+"""Interprets events: which commands each produces, for whoever plays the part. Compiled."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from yehu_server.core.midi.channel_messages import disconnect, receive, system_r
 from yehu_server.core.midi.control_changes import is_bound
 from yehu_server.core.midi.emit_commands import (
     begin_key,
+    clear_held_keys,
     end_key,
-    express,
-    hold_nothing,
     pass_on,
     record_command,
     release_held,
+    set_for_next_note,
     write,
 )
 from yehu_server.core.midi.events import (
@@ -35,15 +35,15 @@ from yehu_server.core.midi.events import (
     START,
     TABLES_TO,
 )
-from yehu_server.core.midi.note_ends import SUSTAIN, end_all, end_notes, lift_pedal
+from yehu_server.core.midi.note_ends import SUSTAIN_CONTROL, end_all, end_notes, lift_pedal
 from yehu_server.core.midi.notes import note_off, note_on
 from yehu_server.core.midi.part_keys import list_key
-from yehu_server.core.midi.record import CHANNELS, NONE, Midi, emit
+from yehu_server.core.midi.record import CHANNEL_COUNT, NONE, Midi, emit
 from yehu_server.core.midi.remapping import change_binds, start
 from yehu_server.core.midi.section import slide_players
 from yehu_server.core.midi.sources import move_control, set_directly
 from yehu_server.core.midi.tables import CONTROL as CONTROL_SOURCE
-from yehu_server.core.midi.tables import SLOTS, TABLES
+from yehu_server.core.midi.tables import TABLE_SLOTS, TABLES
 from yehu_server.core.player.commands import (
     BEGIN,
     END,
@@ -69,17 +69,18 @@ START_VALUES = np.array([param.default for param in PLAYERS_FIRST])
 def interpret(
     m: Midi, tables: Any, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
-    """Interpret an event, given by its fields; the commands that it comes to are in the record.
+    """Interpret an event, given by its fields; the commands that it produces are in the record.
 
-    One of no kind, for no parameter, or with a number that is not finite changes nothing.
+    An event of unknown kind, for an unknown parameter, or with a number that is not finite is
+    ignored.
 
     Parameters
     ----------
-    tables : pointer to SLOTS records of dtype TABLES
+    tables : pointer to TABLE_SLOTS records of dtype TABLES
 
     Real time: safe; no allocation, no exception.
     """
-    all_tables = carray(tables, (SLOTS,), TABLES)
+    all_tables = carray(tables, (TABLE_SLOTS,), TABLES)
     t = all_tables[m.tables]
     m.commands = 0
     if kind < len(KINDS) or kind > TABLES_TO:
@@ -88,9 +89,9 @@ def interpret(
         return
     elif kind == MESSAGE:
         receive(m, t, frame, index)
-    elif kind == TABLES_TO and 0 <= index < SLOTS:
+    elif kind == TABLES_TO and 0 <= index < TABLE_SLOTS:
         change_tables(m, t, all_tables[index], frame)
-        m.tables = index  # from now on the others may be written
+        m.tables = index  # the other slots may be overwritten from here on
     elif kind in (NOTE_ON, FINGER_ON, NOTE_OFF):
         act_on_key(m, t, frame, kind, index, value, min(other, 1.0))
     elif kind in (SET, LOAD) and 0 <= index < PARAMETER_COUNT:
@@ -140,17 +141,17 @@ def apply_start_values(m: Any, t: Any, frame: int, with_all: bool) -> None:
 @compiled_exactly
 def command(m: Any, frame: int, kind: int, index: int, value: float, other: float) -> None:
     """Pass on a command (``player.commands``) that was posted as an event."""
-    is_right = math.isfinite(value) and math.isfinite(other)
+    is_valid = math.isfinite(value) and math.isfinite(other)
     if kind in (WRITE, HOLD, EXPRESS):
-        is_right = is_right and 0 <= index < PARAMETER_COUNT
+        is_valid = is_valid and 0 <= index < PARAMETER_COUNT
     if m.players == 1:  # as it is: it may be one of a replay
-        if is_right:
+        if is_valid:
             record_command(m, kind, index, value, other)
         emit(m, 0, frame, kind, index, value, other)
-    elif not is_right or not 0 <= kind < len(KINDS):
+    elif not is_valid or not 0 <= kind < len(KINDS):
         return
     elif kind == EXPRESS:
-        express(m, frame, index, value)
+        set_for_next_note(m, frame, index, value)
     elif kind in (WRITE, HOLD):
         write(m, frame, index, value, kind == HOLD, max(other, 0.0), NONE)
     elif kind == BEGIN:
@@ -163,7 +164,7 @@ def command(m: Any, frame: int, kind: int, index: int, value: float, other: floa
         if kind == RELEASE and value == 0.0:
             release_held(m)
         elif kind == STOP and value != 0.0:
-            hold_nothing(m)
+            clear_held_keys(m)
         pass_on(m, frame, kind, index, value, other)
 
 
@@ -182,8 +183,8 @@ def change_tables(m: Any, before: Any, t: Any, frame: int) -> None:
     change_binds(m, before, t, frame)
     if t.mpe != before.mpe:
         system_reset(m, t, frame)
-    if is_bound(t, SUSTAIN):  # the pedal no longer holds notes
-        for channel in range(CHANNELS):
+    if is_bound(t, SUSTAIN_CONTROL):  # the pedal no longer holds notes
+        for channel in range(CHANNEL_COUNT):
             m.sustain[channel] = 0
-        for channel in range(CHANNELS):
+        for channel in range(CHANNEL_COUNT):
             lift_pedal(m, t, frame, channel)

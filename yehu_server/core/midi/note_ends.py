@@ -9,22 +9,22 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import master_of, moves_all
-from yehu_server.core.midi.emit_commands import end_listed, express
+from yehu_server.core.midi.emit_commands import end_listed, set_for_next_note
 from yehu_server.core.midi.part_keys import list_key, next_sounding_key
-from yehu_server.core.midi.record import CHANNELS, NONE, Midi
+from yehu_server.core.midi.record import CHANNEL_COUNT, NONE, Midi
 from yehu_server.core.midi.tables import Tables
-from yehu_server.core.midi.values import find_values, remember_last
+from yehu_server.core.midi.values import remember_last, resolve_values
 
-SUSTAIN = 64  # the control change; a mapping may bind it to something else
+SUSTAIN_CONTROL = 64  # the control change; a mapping may bind it to something else
 
 
 @compiled_exactly
 def express_key(m: Any, t: Any, frame: int, channel: int, key: float) -> None:
     """Give a note that begins, or sounds again, its own values of parameters."""
-    find_values(m, t, channel, key)
+    resolve_values(m, t, channel, key)
     for i in range(m.targets):
         index = m.target[i]
-        express(m, frame, index, m.found_value[index])
+        set_for_next_note(m, frame, index, m.resolved_value[index])
 
 
 @native
@@ -61,7 +61,7 @@ def list_channel(m: Any, channel: int) -> None:
 def pedal_of(m: Any, t: Any, channel: int) -> int:
     """A channel whose pedal holds the notes of this one; NONE where none does."""
     master = master_of(m, channel)
-    for each in range(CHANNELS):
+    for each in range(CHANNEL_COUNT):
         if m.sustain[each] != 0 and (each in (channel, master) or moves_all(m, t, each, False)):
             return each
     return NONE

@@ -18,9 +18,9 @@ from yehu_server.core.midi.note_ends import (
     release_key,
 )
 from yehu_server.core.midi.part_keys import find_key
-from yehu_server.core.midi.record import CHANNELS, IN_PORT, NONE, Midi
+from yehu_server.core.midi.record import CHANNEL_COUNT, CHANNELS_PER_PORT, NONE, Midi
 from yehu_server.core.midi.sources import set_directly
-from yehu_server.core.midi.tables import CLAMP, KEYS, NOTE, SKIP, VELOCITY, Tables
+from yehu_server.core.midi.tables import CLAMP, KEY_COUNT, NOTE, SKIP, VELOCITY, Tables
 from yehu_server.core.midi.values import keep_targets_of
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.parameter_indices import ARTICULATION
@@ -35,13 +35,13 @@ def pitch_of_key(pitches: Any, key: float) -> float:
 
     A fractional key lies between the mapped keys below and above.
     """
-    if not 0.0 <= key <= KEYS - 1.0:  # also refuses NaN
+    if not 0.0 <= key <= KEY_COUNT - 1.0:  # also refuses NaN
         return math.nan
     below, above = math.floor(key), math.ceil(key)
     if below != above:
         while below > 0 and math.isnan(pitches[below]):
             below -= 1
-        while above < KEYS - 1 and math.isnan(pitches[above]):
+        while above < KEY_COUNT - 1 and math.isnan(pitches[above]):
             above += 1
     low, high = pitches[below], pitches[above]
     if below != above:  # NaN where one is not mapped
@@ -67,14 +67,14 @@ def fitted(policy: int, lowest: float, highest: float, note: float) -> float:
 
 # -- keys ------------------------------------------------------------------------------------------
 
-SWITCHES = len(ARTICULATIONS)  # keys that choose an articulation, where a mapping has them
+SWITCH_COUNT = len(ARTICULATIONS)  # keys that choose an articulation, where a mapping has them
 
 
 @compiled_exactly
 def is_switch(t: Any, channel: int, key: float) -> bool:
     """Whether a key chooses an articulation and plays no note."""
     place = key - t.first_switch  # NaN where there are no such keys
-    return bool(is_midi(channel) and 0.0 <= place < SWITCHES)
+    return bool(is_midi(channel) and 0.0 <= place < SWITCH_COUNT)
 
 
 @native
@@ -109,11 +109,11 @@ def note_on(
     if math.isnan(playable):
         return
     if is_midi(channel):
-        m.is_keyboard[channel // IN_PORT] = 1
-        if key == np.rint(key) and 0 <= key < KEYS:
+        m.is_keyboard[channel // CHANNELS_PER_PORT] = 1
+        if key == np.rint(key) and 0 <= key < KEY_COUNT:
             m.pressure_number[channel, int(key)] = 0
     m.moves += 1
-    place = channel if is_midi(channel) else CHANNELS
+    place = channel if is_midi(channel) else CHANNEL_COUNT
     m.strike_number[place], m.strike_velocity[place], m.strike_key[place] = m.moves, velocity, key
     m.notes_of[place] += 1
     m.has_last, m.last_channel, m.last_key = 1, channel, key

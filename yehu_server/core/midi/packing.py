@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-BYTE, LENGTH_AT, PORT_AT = 8, 24, 32  # bits
-MOST_BYTES = 3
+BYTE_BITS, LENGTH_SHIFT, PORT_SHIFT = 8, 24, 32  # bits
+MAX_BYTES = 3
 
 
 def packed(message: Sequence[int], port: int = 0) -> int:
@@ -16,15 +16,15 @@ def packed(message: Sequence[int], port: int = 0) -> int:
 
     Longer ones are packed as if they had no byte, and change nothing.
     """
-    if len(message) > MOST_BYTES:
-        return port << PORT_AT
-    index = len(message) << LENGTH_AT | port << PORT_AT
+    if len(message) > MAX_BYTES:
+        return port << PORT_SHIFT
+    index = len(message) << LENGTH_SHIFT | port << PORT_SHIFT
     for place, byte in enumerate(message):
-        index |= (byte & 0xFF) << BYTE * place
+        index |= (byte & 0xFF) << BYTE_BITS * place
     return index
 
 
 def unpacked(index: int) -> tuple[bytes, int]:
     """The bytes and the port of a packed message."""
-    length, port = index >> LENGTH_AT & 0xFF, index >> PORT_AT
-    return bytes(index >> BYTE * place & 0xFF for place in range(length)), port
+    length, port = index >> LENGTH_SHIFT & 0xFF, index >> PORT_SHIFT
+    return bytes(index >> BYTE_BITS * place & 0xFF for place in range(length)), port

@@ -6,7 +6,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import NONE
-from yehu_server.core.player.record import MOST_HELD
+from yehu_server.core.player.record import MAX_HELD
 
 
 @compiled_exactly
@@ -26,7 +26,7 @@ def hold_key(
     before = find_key(m, channel, key)
     if before != NONE:
         forget_key(m, before)
-    elif m.held == MOST_HELD:
+    elif m.held == MAX_HELD:
         forget_key(m, 0)
     n = m.held
     m.held_channel[n], m.held_key[n] = channel, key

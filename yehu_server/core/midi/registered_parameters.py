@@ -1,7 +1,7 @@
 """Registered and other parameters (RPN, NRPN): selects one, and enters its value. Compiled.
 
 Registered are the bend range, the tuning of a channel and MPE's configuration; others are sources
-of a mapping.
+of a mapping. The bend range that a part begins with is a row of ``params.table``.
 """
 
 from __future__ import annotations
@@ -20,8 +20,13 @@ from yehu_server.core.midi.channels import (
 )
 from yehu_server.core.midi.emit_commands import in_range
 from yehu_server.core.midi.notes import end_channel
-from yehu_server.core.midi.record import IN_PORT, NONE
-from yehu_server.core.midi.sources import follow, move_coarse, move_fine, step
+from yehu_server.core.midi.record import CHANNELS_PER_PORT, NONE
+from yehu_server.core.midi.sources import (
+    move_source_coarse,
+    move_source_fine,
+    step_source,
+    write_targets,
+)
 from yehu_server.core.midi.tables import BEND, NRPN
 from yehu_server.core.player.parameter_indices import INDEX
 
@@ -57,11 +62,11 @@ def enter_data(m: Any, t: Any, frame: int, channel: int, control: int, value: in
     if m.is_registered[channel] == 0:
         source = NRPN + number
         if control == DATA_ENTRY:
-            move_coarse(m, t, frame, source, channel, value)
+            move_source_coarse(m, t, frame, source, channel, value)
         elif control == DATA_ENTRY_FINE:
-            move_fine(m, t, frame, source, channel, value)
+            move_source_fine(m, t, frame, source, channel, value)
         else:
-            step(m, t, frame, source, channel, 1.0 if control == INCREMENT else -1.0)
+            step_source(m, t, frame, source, channel, 1.0 if control == INCREMENT else -1.0)
     elif number == MPE_CONFIGURATION and control == DATA_ENTRY:
         set_zone(m, t, frame, channel, value)
     elif number == BEND_RANGE:
@@ -106,23 +111,26 @@ def set_bend_range(m: Any, t: Any, frame: int, channel: int, control: int, value
     m.bend_range[channel] = found
     master = master_of(m, channel)
     if master != NONE:
-        for member in range(IN_PORT * (channel // IN_PORT), IN_PORT * (channel // IN_PORT + 1)):
+        for member in range(
+            CHANNELS_PER_PORT * (channel // CHANNELS_PER_PORT),
+            CHANNELS_PER_PORT * (channel // CHANNELS_PER_PORT + 1),
+        ):
             if master_of(m, member) == master:
                 m.bend_range[member] = found
-    follow(m, t, frame, BEND, channel, False)
+    write_targets(m, t, frame, BEND, channel, False)
 
 
 @compiled_exactly
 def set_zone(m: Any, t: Any, frame: int, channel: int, members: int) -> None:
     """Create or end an MPE zone; the notes of its channels end and their state is forgotten."""
-    port = channel // IN_PORT
-    first = IN_PORT * port
+    port = channel // CHANNELS_PER_PORT
+    first = CHANNELS_PER_PORT * port
     was_member = 0
-    for own in range(IN_PORT):
+    for own in range(CHANNELS_PER_PORT):
         was_member |= (1 << own) if is_in_zone(m, first + own, channel) else 0
     if not configure_zone(m, channel, members):
         return
-    for own in range(IN_PORT):
+    for own in range(CHANNELS_PER_PORT):
         if was_member >> own & 1 != 0 or is_in_zone(m, first + own, channel):
             end_channel(m, t, frame, first + own)
             forget_moves(m, first + own)

@@ -16,8 +16,8 @@ from yehu_server.core.midi.emit_commands import write
 from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.resets import restore_moves
 from yehu_server.core.midi.sources import set_directly
-from yehu_server.core.midi.tables import KEYS, MOST_BINDS, POLY_PRESSURE, Tables
-from yehu_server.core.midi.values import find_values, keep_target
+from yehu_server.core.midi.tables import KEY_COUNT, MAX_BINDS, POLY_PRESSURE, Tables
+from yehu_server.core.midi.values import keep_target, resolve_values
 from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.params.table import TABLE
 
@@ -49,24 +49,24 @@ def change_binds(m: Midi, before: Tables, t: Tables, frame: int) -> None:
     for bind in range(int(t.binds)):
         keep_target(m, int(t.target[bind]))
     for index in range(PARAMETER_COUNT):
-        m.found_number[index] = 0  # until its start value has been checked
+        m.resolved_number[index] = 0  # until its start value has been checked
     for i in range(int(before.starts)):
         change_start(m, before, t, frame, int(before.start_row[i]))
     for i in range(int(t.starts)):
         change_start(m, before, t, frame, int(t.start_row[i]))
     if m.has_last != 0:
-        find_values(m, t, m.last_channel, m.last_key)
+        resolve_values(m, t, m.last_channel, m.last_key)
         for i in range(m.targets):
             index = m.target[i]
-            write(m, frame, index, m.found_value[index], False, 0.0, NONE)
+            write(m, frame, index, m.resolved_value[index], False, 0.0, NONE)
 
 
 @compiled_exactly
 def change_start(m: Any, before: Any, t: Any, frame: int, index: int) -> None:
     """Give a parameter its new start value, once, if it still has the old one."""
-    if m.found_number[index] != 0:
+    if m.resolved_number[index] != 0:
         return
-    m.found_number[index] = 1
+    m.resolved_number[index] = 1
     old, new = start_value(before, index), start_value(t, index)
     now = m.set_to[index] if m.is_target[index] != 0 else m.value[index]
     if old != new and now == old:
@@ -79,7 +79,7 @@ def change_start(m: Any, before: Any, t: Any, frame: int, index: int) -> None:
 @compiled_exactly
 def change_moves(m: Any, before: Any, t: Any, channel: int) -> None:
     """Give the moves of a channel the numbers of other binds."""
-    for bind in range(MOST_BINDS):
+    for bind in range(MAX_BINDS):
         m.saved_move_number[bind] = m.saved_taken_number[bind] = 0
     is_pressed = False
     for bind in range(int(t.binds)):
@@ -102,19 +102,22 @@ def change_moves(m: Any, before: Any, t: Any, channel: int) -> None:
                 m.saved_taken_number[bind], m.saved_taken_position[bind] = number, position
     restore_moves(m, channel)
     if not is_pressed:
-        for key in range(KEYS):
+        for key in range(KEY_COUNT):
             m.pressure_number[channel, key] = 0
 
 
 @compiled_exactly
 def change_faders(m: Any, before: Any, t: Any) -> None:
     """Let named controls stay where their bind is the same."""
-    for bind in range(MOST_BINDS):
-        m.saved_move_number[bind], m.saved_position[bind] = m.has_fader[bind], m.fader[bind]
-        m.saved_taken_position[bind] = m.fader_wrote[bind]
-        m.has_fader[bind], m.fader_wrote[bind] = 0, math.nan
+    for bind in range(MAX_BINDS):
+        m.saved_move_number[bind], m.saved_position[bind] = (
+            m.has_control_position[bind],
+            m.control_position[bind],
+        )
+        m.saved_taken_position[bind] = m.control_wrote[bind]
+        m.has_control_position[bind], m.control_wrote[bind] = 0, math.nan
     for bind in range(int(t.binds)):
         for old in range(int(before.binds)):
             if before.same[old] == t.same[bind] and m.saved_move_number[old] != 0:
-                m.has_fader[bind], m.fader[bind] = 1, m.saved_position[old]
-                m.fader_wrote[bind] = m.saved_taken_position[old]
+                m.has_control_position[bind], m.control_position[bind] = 1, m.saved_position[old]
+                m.control_wrote[bind] = m.saved_taken_position[old]

@@ -7,12 +7,12 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import add_active, forget_moves, moves_all
 from yehu_server.core.midi.emit_commands import write
-from yehu_server.core.midi.record import CHANNELS, NONE, Midi
-from yehu_server.core.midi.sources import follow
+from yehu_server.core.midi.record import CHANNEL_COUNT, NONE, Midi
+from yehu_server.core.midi.sources import write_targets
 from yehu_server.core.midi.tables import (
     BEND,
-    KEYS,
-    MOST_BINDS,
+    KEY_COUNT,
+    MAX_BINDS,
     NOTE,
     PRESSURE,
     VELOCITY,
@@ -27,7 +27,7 @@ VOLUME, PAN = INDEX["/playing/volume"], INDEX["/room/pan"]
 @native
 def reset_controllers(m: Midi, t: Tables, frame: int, channel: int) -> None:
     """Act on "reset all controllers"."""
-    for key in range(KEYS):
+    for key in range(KEY_COUNT):
         m.pressure_number[channel, key] = 0
     for bind in range(int(t.binds)):
         if int(t.target[bind]) not in (VOLUME, PAN):
@@ -36,7 +36,7 @@ def reset_controllers(m: Midi, t: Tables, frame: int, channel: int) -> None:
     for bind in range(int(t.binds)):
         source = int(t.source[bind])
         if int(t.first[bind]) == bind and source not in (VELOCITY, NOTE):
-            follow(m, t, frame, source, channel, False)
+            write_targets(m, t, frame, source, channel, False)
 
 
 @compiled_exactly
@@ -49,7 +49,7 @@ def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
         forget_moves(m, channel)  # velocities
         return
     has_bend, has_pressure, is_saved = False, False, False
-    for bind in range(MOST_BINDS):
+    for bind in range(MAX_BINDS):
         m.saved_move_number[bind] = m.saved_taken_number[bind] = 0
     for bind in range(int(t.binds)):
         first, source = int(t.first[bind]), int(t.source[bind])
@@ -71,16 +71,16 @@ def disconnect_channel(m: Any, t: Any, frame: int, channel: int) -> None:
     if is_saved:
         restore_moves(m, channel)
     if has_bend:
-        follow(m, t, frame, BEND, channel, False)
+        write_targets(m, t, frame, BEND, channel, False)
     if has_pressure:
-        follow(m, t, frame, PRESSURE, channel, False)
+        write_targets(m, t, frame, PRESSURE, channel, False)
 
 
 @compiled_exactly
 def restore_moves(m: Any, channel: int) -> None:
     """Give a channel the moves that were set aside."""
     add_active(m, channel)
-    for bind in range(MOST_BINDS):
+    for bind in range(MAX_BINDS):
         m.move_number[channel, bind], m.position[channel, bind] = (
             m.saved_move_number[bind],
             m.saved_position[bind],
@@ -97,7 +97,7 @@ def forget_all_moves(m: Any, frame: int) -> None:
     for n in range(m.held):
         m.held_strike_number[n] = 0
     m.last_strike_number = 0
-    m.strike_number[CHANNELS] = 0
+    m.strike_number[CHANNEL_COUNT] = 0
     for i in range(m.targets):
         index = m.target[i]
         write(m, frame, index, m.set_to[index], False, 0.0, NONE)

@@ -1,7 +1,7 @@
 """A section: several players who play one part, each an instrument of their own. Compiled.
 
 Commands are passed on to the players: notes at the frame at which each of them begins, which is at
-most ``section_players.LATEST_MS`` after the planned one; all else as it is requested, but not
+most ``section_players.MAX_LATE_MS`` after the planned one; all else as it is requested, but not
 before an earlier note. Keys struck within `CHORD_MS` are a chord, whose notes the players divide;
 one line is played by all. Where a note of a chord ends, its players rest until the next note, which
 is theirs.
@@ -15,11 +15,11 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.part_keys import find_key
-from yehu_server.core.midi.record import MOST_CHORD, NONE, emit
+from yehu_server.core.midi.record import MAX_CHORD, NONE, emit
 from yehu_server.core.midi.section_players import own_value, plan_onset, plan_release
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, SLIDE, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.core.player.record import MOST_HELD
+from yehu_server.core.player.record import MAX_HELD
 from yehu_server.params.table import ENGINE
 
 CHORD_MS = 30.0  # keys struck within this time are a chord
@@ -111,7 +111,7 @@ def add_value(m: Any, index: int, value: float) -> None:
 
 @compiled_exactly
 def set_playing_count(m: Any, players: int, frame: int) -> None:
-    """Let so many play; the others end their notes and rest."""
+    """Let a number of players play; the others end their notes and rest."""
     for who in range(players, m.players):
         at = act(m, who, frame, 0)
         for _ in range(m.holds[who]):
@@ -176,7 +176,7 @@ def begin_together(m: Any, frame: int, channel: int, key: float, pitch: float) -
 def joins_chord(m: Any, frame: int, channel: int, key: float) -> bool:
     """Whether a key is struck soon enough after a chord's, and all of those are held."""
     window = int(np.rint(CHORD_MS * 1e-3 * m.rate))
-    if not 0 <= frame - m.chord_at < window or not 0 < m.chord < MOST_CHORD:
+    if not 0 <= frame - m.chord_at < window or not 0 < m.chord < MAX_CHORD:
         return False
     for n in range(m.chord):
         if m.chord_channel[n] == channel and m.chord_key[n] == key:
@@ -229,7 +229,7 @@ def begin_of(m: Any, who: int, note: int, at: int) -> None:
     before = find_hold(m, who, channel, key)
     if before != NONE:
         remove_hold(m, who, before)
-    if m.holds[who] == MOST_HELD:
+    if m.holds[who] == MAX_HELD:
         remove_hold(m, who, 0)
     n = m.holds[who]
     m.holds_channel[who, n], m.holds_key[who, n], m.holds_from[who, n] = channel, key, at

@@ -25,21 +25,21 @@ from yehu_server.core.midi.tables import (
 from yehu_server.core.midi.values import (
     NO_KEY,
     STEPS,
-    find_values,
     keep_targets_of,
     receives,
+    resolve_values,
     set_target,
 )
 from yehu_server.core.player.parameter_indices import IS_PLAYER_CONTROLLED
 
-FINE_BITS, FINEST = 7, 16383.0
+FINE_BITS, MAX_14_BITS = 7, 16383.0
 
 
 # -- the sounding notes ---------------------------------------------------------------------------
 
 
 @native
-def follow(m: Midi, t: Tables, frame: int, source: int, channel: int, glides: bool) -> None:
+def write_targets(m: Midi, t: Tables, frame: int, source: int, channel: int, glides: bool) -> None:
     """Write the targets of a source that was moved on a channel.
 
     Parameters
@@ -50,21 +50,23 @@ def follow(m: Midi, t: Tables, frame: int, source: int, channel: int, glides: bo
     keep_targets_of(m, t, source)
     if m.sounding == NONE:
         if m.has_last != 0:
-            follow_key(m, t, frame, source, channel, glides, m.last_channel, m.last_key, NONE)
+            write_key_targets(
+                m, t, frame, source, channel, glides, m.last_channel, m.last_key, NONE
+            )
         else:
-            find_values(m, t, channel, NO_KEY)
-            write_found(m, t, frame, source, channel, glides, False, 0, NONE)
+            resolve_values(m, t, channel, NO_KEY)
+            write_resolved(m, t, frame, source, channel, glides, False, 0, NONE)
         return
     sounding = count_sounding(m)
     for n in range(m.held):
         if sounds(m, n):
-            of_key = n if sounding > 1 else NONE
+            only_key = n if sounding > 1 else NONE
             key_channel, key = m.held_channel[n], m.held_key[n]
-            follow_key(m, t, frame, source, channel, glides, key_channel, key, of_key)
+            write_key_targets(m, t, frame, source, channel, glides, key_channel, key, only_key)
 
 
 @compiled_exactly
-def follow_key(
+def write_key_targets(
     m: Any,
     t: Any,
     frame: int,
@@ -73,15 +75,18 @@ def follow_key(
     glides: bool,
     key_channel: int,
     key: float,
-    of_key: int,
+    only_key: int,
 ) -> None:
-    """Write the targets of a moved source as a key has them; to its players alone, if divided."""
-    find_values(m, t, key_channel, key)
-    write_found(m, t, frame, source, channel, glides, True, key_channel, of_key)
+    """Write the targets of a moved source as a key has them.
+
+    Only to the players of that key where the section is divided.
+    """
+    resolve_values(m, t, key_channel, key)
+    write_resolved(m, t, frame, source, channel, glides, True, key_channel, only_key)
 
 
 @compiled_exactly
-def write_found(
+def write_resolved(
     m: Any,
     t: Any,
     frame: int,
@@ -90,17 +95,17 @@ def write_found(
     glides: bool,
     has_key: bool,
     key_channel: int,
-    of_key: int,
+    only_key: int,
 ) -> None:
-    """Write what `find_values` found for the targets of a source."""
+    """Write what `resolve_values` resolved for the targets of a source."""
     for bind in range(int(t.binds)):
         if int(t.source[bind]) != source:
             continue
-        if has_key and not is_for(m, t, bind, channel, key_channel):
+        if has_key and not affects_key_channel(m, t, bind, channel, key_channel):
             continue
         index = int(t.target[bind])
         glide_ms = glide_of(m, t, source, channel, index) if glides else 0.0
-        write(m, frame, index, m.found_value[index], False, glide_ms, of_key)
+        write(m, frame, index, m.resolved_value[index], False, glide_ms, only_key)
 
 
 @compiled_exactly
@@ -115,9 +120,9 @@ def glide_of(m: Any, t: Any, source: int, channel: int, index: int) -> float:
 
 
 @compiled_exactly
-def is_for(m: Any, t: Any, bind: int, channel: int, of_key: int) -> bool:
+def affects_key_channel(m: Any, t: Any, bind: int, channel: int, key_channel: int) -> bool:
     """Whether a bind's moves on a channel affect the notes of another, or of the same."""
-    return bool(moves_key(m, t, channel, of_key, t.for_all[bind] != 0.0))
+    return bool(moves_key(m, t, channel, key_channel, t.for_all[bind] != 0.0))
 
 
 @compiled_exactly
@@ -148,7 +153,7 @@ def first_receiving(m: Any, t: Any, source: int, channel: int) -> int:
 
 
 @native
-def move(m: Midi, t: Tables, frame: int, source: int, channel: int, position: float) -> None:
+def move_source(m: Midi, t: Tables, frame: int, source: int, channel: int, position: float) -> None:
     """Move a source of a channel to a position, 0 to 1."""
     if first_receiving(m, t, source, channel) == NONE:
         return
@@ -167,7 +172,7 @@ def move(m: Midi, t: Tables, frame: int, source: int, channel: int, position: fl
             first = int(t.first[bind])
             m.move_number[channel, first], m.position[channel, first] = number, position
             break
-    follow(m, t, frame, source, channel, True)
+    write_targets(m, t, frame, source, channel, True)
 
 
 @compiled_exactly
@@ -176,12 +181,12 @@ def takes_over(m: Any, t: Any, bind: int, channel: int, position: float) -> bool
     of_channel, key = channel, NO_KEY
     if m.sounding != NONE:
         key_channel = m.held_channel[m.sounding]
-        if is_for(m, t, bind, channel, key_channel):
+        if affects_key_channel(m, t, bind, channel, key_channel):
             of_channel, key = key_channel, m.held_key[m.sounding]
-    elif m.has_last != 0 and is_for(m, t, bind, channel, m.last_channel):
+    elif m.has_last != 0 and affects_key_channel(m, t, bind, channel, m.last_channel):
         of_channel, key = m.last_channel, m.last_key
-    find_values(m, t, of_channel, key)
-    present = m.found_value[int(t.target[bind])]
+    resolve_values(m, t, of_channel, key)
+    present = m.resolved_value[int(t.target[bind])]
     had = from_unit(t, bind, m.taken_position[channel, bind])
     if m.taken_number[channel, bind] != 0 and had == present:
         return True
@@ -191,13 +196,13 @@ def takes_over(m: Any, t: Any, bind: int, channel: int, position: float) -> bool
 
 
 @compiled_exactly
-def move_coarse(m: Any, t: Any, frame: int, source: int, channel: int, value: int) -> None:
+def move_source_coarse(m: Any, t: Any, frame: int, source: int, channel: int, value: int) -> None:
     """Move a 14-bit source by its coarse half, 0 to 127; the fine half is set to 0."""
-    move(m, t, frame, source, channel, (value << FINE_BITS) / FINEST)
+    move_source(m, t, frame, source, channel, (value << FINE_BITS) / MAX_14_BITS)
 
 
 @compiled_exactly
-def position_on(m: Any, t: Any, source: int, channel: int) -> float:
+def position_of(m: Any, t: Any, source: int, channel: int) -> float:
     """Where a source was last moved to on a channel; NaN: nowhere."""
     for bind in range(int(t.binds)):
         if int(t.source[bind]) == source:
@@ -207,29 +212,29 @@ def position_on(m: Any, t: Any, source: int, channel: int) -> float:
 
 
 @compiled_exactly
-def move_fine(m: Any, t: Any, frame: int, source: int, channel: int, value: int) -> None:
-    """Set the fine half, 0 to 127, of a source that `move_coarse` moved."""
-    before = position_on(m, t, source, channel)
+def move_source_fine(m: Any, t: Any, frame: int, source: int, channel: int, value: int) -> None:
+    """Set the fine half, 0 to 127, of a source that `move_source_coarse` moved."""
+    before = position_of(m, t, source, channel)
     if not math.isnan(before):
-        coarse = int(np.rint(before * FINEST)) >> FINE_BITS
-        move(m, t, frame, source, channel, (coarse << FINE_BITS | value) / FINEST)
+        coarse = int(np.rint(before * MAX_14_BITS)) >> FINE_BITS
+        move_source(m, t, frame, source, channel, (coarse << FINE_BITS | value) / MAX_14_BITS)
 
 
 @compiled_exactly
-def step(m: Any, t: Any, frame: int, source: int, channel: int, steps: float) -> None:
+def step_source(m: Any, t: Any, frame: int, source: int, channel: int, steps: float) -> None:
     """Move a source by 127ths of its range, from its position or that of its target."""
     bind = first_receiving(m, t, source, channel)
     if bind == NONE:
         return
-    position = position_on(m, t, source, channel)
+    position = position_of(m, t, source, channel)
     if math.isnan(position):
         position = to_unit(t, bind, m.value[int(t.target[bind])])
     moved = min(max(position + steps / STEPS, 0.0), 1.0)
-    move(m, t, frame, source, channel, moved)
+    move_source(m, t, frame, source, channel, moved)
 
 
 @compiled_exactly
-def press_key(m: Any, t: Any, frame: int, channel: int, key: int, position: float) -> None:
+def move_poly_pressure(m: Any, t: Any, frame: int, channel: int, key: int, position: float) -> None:
     """Move the aftertouch of one key to a position, 0 to 1."""
     is_bound = False
     for bind in range(int(t.binds)):
@@ -238,7 +243,7 @@ def press_key(m: Any, t: Any, frame: int, channel: int, key: int, position: floa
         add_active(m, channel)
         m.moves += 1
         m.pressure_number[channel, key], m.pressure[channel, key] = m.moves, position
-        follow(m, t, frame, POLY_PRESSURE, channel, True)
+        write_targets(m, t, frame, POLY_PRESSURE, channel, True)
 
 
 @compiled_exactly
@@ -252,13 +257,13 @@ def move_control(m: Any, t: Any, frame: int, source: int, argument: float) -> No
         if lo != hi:
             position = (min(max(argument, min(lo, hi)), max(lo, hi)) - lo) / (hi - lo)
         index = int(t.target[bind])
-        present, wrote = m.value[index], m.fader_wrote[bind]
+        present, wrote = m.value[index], m.control_wrote[bind]
         is_waiting = t.soft[bind] != 0.0 and present != wrote
-        before = m.fader[bind] if m.has_fader[bind] != 0 else math.nan
-        m.has_fader[bind], m.fader[bind] = 1, position
+        before = m.control_position[bind] if m.has_control_position[bind] != 0 else math.nan
+        m.has_control_position[bind], m.control_position[bind] = 1, position
         if not is_waiting or picks_up(t, bind, position, before, present):
             value = from_unit(t, bind, position)
-            m.fader_wrote[bind] = set_directly(m, frame, index, value, t.smoothing_ms[bind])
+            m.control_wrote[bind] = set_directly(m, frame, index, value, t.smoothing_ms[bind])
 
 
 @compiled_exactly

@@ -14,10 +14,10 @@ from yehu_server.core.player.note_range import YEHU
 from yehu_server.core.player.parameter_indices import PARAMETER_COUNT
 from yehu_server.params.table import TABLE
 
-MOST_BINDS, MOST_POINTS = 256, 2048
-KEYS = 128
-PROGRAMS = 128
-SLOTS = 3  # tables of a part: those in use, those that are next, those that are written
+MAX_BINDS, MAX_POINTS = 256, 2048
+KEY_COUNT = 128
+PROGRAM_COUNT = 128
+TABLE_SLOTS = 3  # tables of a part: those in use, those that are next, those that are written
 
 # Sources: a control change is its number, a pair of 14 bits PAIR + its coarse half, a
 # non-registered parameter NRPN + its number, a named control CONTROL + its number.
@@ -31,25 +31,25 @@ TABLES = np.dtype(
     [
         # Binds, in order.
         ("binds", np.float64),
-        ("source", np.float64, MOST_BINDS),
-        ("first", np.float64, MOST_BINDS),  # number of the first bind of the same source
-        ("target", np.float64, MOST_BINDS),  # index of a parameter
-        ("lo", np.float64, MOST_BINDS),  # the target's values at the ends of the span
-        ("hi", np.float64, MOST_BINDS),
-        ("curve", np.float64, MOST_BINDS),
-        ("first_point", np.float64, MOST_BINDS),
-        ("points", np.float64, MOST_BINDS),
-        ("invert", np.float64, MOST_BINDS),
-        ("smoothing_ms", np.float64, MOST_BINDS),
-        ("channels", np.float64, MOST_BINDS),  # a bit for each that it receives; 0: all
-        ("soft", np.float64, MOST_BINDS),
-        ("by_range", np.float64, MOST_BINDS),  # 1: the bend range sets its span
-        ("for_all", np.float64, MOST_BINDS),  # 1: it is global
-        ("input_lo", np.float64, MOST_BINDS),
-        ("input_hi", np.float64, MOST_BINDS),
-        ("same", np.float64, MOST_BINDS),  # equal for equal binds, of other tables too
-        ("x", np.float64, MOST_POINTS),  # of curves by points
-        ("y", np.float64, MOST_POINTS),
+        ("source", np.float64, MAX_BINDS),
+        ("first", np.float64, MAX_BINDS),  # number of the first bind of the same source
+        ("target", np.float64, MAX_BINDS),  # index of a parameter
+        ("lo", np.float64, MAX_BINDS),  # the target's values at the ends of the span
+        ("hi", np.float64, MAX_BINDS),
+        ("curve", np.float64, MAX_BINDS),
+        ("first_point", np.float64, MAX_BINDS),
+        ("points", np.float64, MAX_BINDS),
+        ("invert", np.float64, MAX_BINDS),
+        ("smoothing_ms", np.float64, MAX_BINDS),
+        ("channels", np.float64, MAX_BINDS),  # a bit for each that it receives; 0: all
+        ("soft", np.float64, MAX_BINDS),
+        ("by_range", np.float64, MAX_BINDS),  # 1: the bend range sets its span
+        ("for_all", np.float64, MAX_BINDS),  # 1: it is global
+        ("input_lo", np.float64, MAX_BINDS),
+        ("input_hi", np.float64, MAX_BINDS),
+        ("same", np.float64, MAX_BINDS),  # equal for equal binds, of other tables too
+        ("x", np.float64, MAX_POINTS),  # of curves by points
+        ("y", np.float64, MAX_POINTS),
         ("mpe", np.float64),  # 1: every port starts as an MPE zone
         ("first_switch", np.float64),  # lowest of the keys that choose an articulation; NaN: none
         # Start values, in order; and by index what the mapping starts with, or the default.
@@ -59,18 +59,18 @@ TABLES = np.dtype(
         ("usual", np.float64, PARAMETER_COUNT),
         # The tuning: pitches of keys, NaN for none; 1: each sounds its own number.
         ("is_equal", np.float64),
-        ("pitch", np.float64, KEYS),
+        ("pitch", np.float64, KEY_COUNT),
         # What happens to notes that the instrument does not have, and its lowest and highest.
         ("policy", np.float64),
         ("lowest", np.float64),
         ("highest", np.float64),
-        # A bit for each channel that is received; -1: all, but for percussion.
+        # A bit for each channel that is received; -1: all except percussion.
         ("received", np.float64),
         # Values of presets by program, in order: indices, and NaN for the end.
         ("has_programs", np.float64),
-        ("has_program", np.float64, PROGRAMS),
-        ("program_row", np.float64, (PROGRAMS, PARAMETER_COUNT)),
-        ("program_value", np.float64, (PROGRAMS, PARAMETER_COUNT)),
+        ("has_program", np.float64, PROGRAM_COUNT),
+        ("program_row", np.float64, (PROGRAM_COUNT, PARAMETER_COUNT)),
+        ("program_value", np.float64, (PROGRAM_COUNT, PARAMETER_COUNT)),
     ]
 )
 Tables = Annotated[Any, TABLES]

@@ -12,8 +12,8 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.midi.channels import bend_range, is_midi, master_of, moves_all
 from yehu_server.core.midi.curves import along_curve, from_unit, inverted
 from yehu_server.core.midi.part_keys import find_key
-from yehu_server.core.midi.record import IN_PORT, NONE, Midi
-from yehu_server.core.midi.tables import KEYS, NOTE, POLY_PRESSURE, VELOCITY, Tables
+from yehu_server.core.midi.record import CHANNELS_PER_PORT, NONE, Midi
+from yehu_server.core.midi.tables import KEY_COUNT, NOTE, POLY_PRESSURE, VELOCITY, Tables
 
 STEPS = 127.0  # largest value of 7 bits
 NO_KEY = -1.0
@@ -23,7 +23,7 @@ NO_KEY = -1.0
 def receives(t: Any, bind: int, channel: int) -> bool:
     """Whether a bind receives on a channel."""
     channels = int(t.channels[bind])
-    return channels == 0 or (channel >= 0 and channels >> (channel % IN_PORT) & 1 != 0)
+    return channels == 0 or (channel >= 0 and channels >> (channel % CHANNELS_PER_PORT) & 1 != 0)
 
 
 @compiled_exactly
@@ -82,7 +82,7 @@ def move_of(m: Any, t: Any, bind: int, channel: int, key: float) -> tuple[int, f
         return 0, 0.0
     if source == POLY_PRESSURE:
         n = int(key)
-        if not 0 <= n < KEYS or n != key:
+        if not 0 <= n < KEY_COUNT or n != key:
             return 0, 0.0
         return m.pressure_number[channel, n], m.pressure[channel, n]
     if t.soft[bind] != 0.0:
@@ -111,7 +111,7 @@ def latest_for_all(m: Any, t: Any, bind: int, but: int) -> tuple[int, float, int
 
 
 @native
-def find_values(m: Midi, t: Tables, channel: int, key: float) -> None:
+def resolve_values(m: Midi, t: Tables, channel: int, key: float) -> None:
     """Find the values of all targets that were ever moved, for a note of a channel.
 
     The latest counts of the write to a target, the channel's own moves, and the moves for all
@@ -120,7 +120,7 @@ def find_values(m: Midi, t: Tables, channel: int, key: float) -> None:
     """
     for i in range(m.targets):
         index = m.target[i]
-        m.found_number[index], m.found_value[index] = m.set_number[index], m.set_to[index]
+        m.resolved_number[index], m.resolved_value[index] = m.set_number[index], m.set_to[index]
     master = master_of(m, channel)
     for bind in range(int(t.binds)):
         number, position = move_of(m, t, bind, channel, key)
@@ -130,7 +130,7 @@ def find_values(m: Midi, t: Tables, channel: int, key: float) -> None:
         if other > number:
             number, position = other, at
         index = int(t.target[bind])
-        if number == 0 or number < m.found_number[index]:
+        if number == 0 or number < m.resolved_number[index]:
             continue
         value = from_unit(t, bind, position)
         if int(t.source[bind]) == VELOCITY:
@@ -141,7 +141,7 @@ def find_values(m: Midi, t: Tables, channel: int, key: float) -> None:
                 value += bend_of(m, t, bind, master)
             if other_channel not in (NONE, master):
                 value += bend_of(m, t, bind, other_channel)
-        m.found_number[index], m.found_value[index] = number, value
+        m.resolved_number[index], m.resolved_value[index] = number, value
 
 
 @compiled_exactly

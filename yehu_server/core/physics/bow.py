@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.grid import read
+from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import BOW, STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
@@ -67,7 +67,7 @@ def friction_limit(model: Model, F_N: float) -> float:
 def choose_string(model: Model, s: Motion, c: Contacts, w: Work, F_N: float) -> tuple[int, bool]:
     """Return the string under the bow, by the sign of the force, and whether it is bowed.
 
-    Bristles off the string lose their deflection; its energy is booked as a loss.
+    Bristles off the string lose their deflection; its energy is recorded as a loss.
     """
     bowed = abs(F_N) >= model.lift_force
     string = c.string[BOW]
@@ -96,5 +96,5 @@ def contact_velocity(
     Less the bow's velocity it is v_r, the velocity of the string relative to the hair.
     """
     i = c.string[BOW]
-    travel = u_b - read(u_prev[i], c.first[BOW], c.weights[BOW])
+    travel = u_b - interpolate(u_prev[i], c.first[BOW], c.weights[BOW])
     return float(0.5 * model.rate * (travel + zeta_next[i] - zeta_prev[i]))

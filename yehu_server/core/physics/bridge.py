@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import each, tan
-from yehu_server.core.physics.grid import place_cubic, read
-from yehu_server.core.physics.layout import MAX_MODES, STRINGS, whole_vectors
+from yehu_server.core.physics.elementary import elementwise, tan
+from yehu_server.core.physics.grid import cubic_weights, interpolate
+from yehu_server.core.physics.layout import MAX_MODES, STRINGS, padded_length
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Motion, Work
 from yehu_server.core.physics.tension import eliminate_tension
@@ -40,8 +40,8 @@ def prepare_bridge(model: Any, quantities: Quantities) -> None:
             f"the bridge mode at {max(body.frequency_hz):.0f} Hz is too high for this sample rate"
         )
     M_m, R_m = np.array(body.mass), np.array(body.damping)
-    # mu_tt bends frequencies down: sin^2(wk/2) M 4/k^2 = K cos^2(wk/2) at resonance.
-    K_m = M_m * (2.0 / k * each(tan, omega * k / 2.0)) ** 2
+    # mu_tt lowers frequencies: sin^2(wk/2) M 4/k^2 = K cos^2(wk/2) at resonance.
+    K_m = M_m * (2.0 / k * elementwise(tan, omega * k / 2.0)) ** 2
     Lambda = 4.0 * M_m + k * k * K_m + 2.0 * k * R_m
     model["modes"] = modes
     model["M_m"][:modes], model["K_m"][:modes], model["R_m"][:modes] = M_m, K_m, R_m
@@ -64,7 +64,7 @@ def place_bridge(model: Model) -> None:
     """Write which nodes of the strings the bridge touches."""
     for i in range(STRINGS):
         position = model.bridge_x / model.h[i]
-        model.bridge_first[i] = place_cubic(position, model.N[i], model.bridge_weights[i])
+        model.bridge_first[i] = cubic_weights(position, model.N[i], model.bridge_weights[i])
 
 
 @compiled
@@ -81,7 +81,7 @@ def set_bridge_compliance(model: Model) -> None:
 def advance_bridge(model: Model, q_next: Array, q: Array, q_prev: Array, f_hammer: float) -> float:
     """Advance the modes, free of string forces; return their sum (m). Eq. (42)."""
     total = 0.0
-    for m in range(whole_vectors(model.modes)):
+    for m in range(padded_length(model.modes)):
         q_next[m] = model.A_q[m] * q[m] + model.B_q[m] * q_prev[m] + model.C_q[m] * f_hammer
         total += q_next[m]
     return total
@@ -101,20 +101,20 @@ def eliminate_tension_and_bridge(
     first, weights = model.bridge_first, model.bridge_weights
     tau_1, tau_per_sum_1, pivot_1 = eliminate_tension(model, w, 0)
     tau_2, tau_per_sum_2, pivot_2 = eliminate_tension(model, w, 1)
-    Delta_1 = read(s.Delta_u[0], first[0], weights[0])
-    Delta_2 = read(s.Delta_u[1], first[1], weights[1])
-    gap_1 = q_sum - read(u_next[0], first[0], weights[0]) - tau_1 * Delta_1
-    gap_2 = q_sum - read(u_next[1], first[1], weights[1]) - tau_2 * Delta_2
+    Delta_1 = interpolate(s.Delta_u[0], first[0], weights[0])
+    Delta_2 = interpolate(s.Delta_u[1], first[1], weights[1])
+    gap_1 = q_sum - interpolate(u_next[0], first[0], weights[0]) - tau_1 * Delta_1
+    gap_2 = q_sum - interpolate(u_next[1], first[1], weights[1]) - tau_2 * Delta_2
 
     # S_c, its diagonal lowered by tension, each row multiplied by its pivot (S_12 below by both),
-    # so that no division waits for another.
+    # so that the divisions are independent and can overlap.
     S_11 = model.S_c[0, 0] * pivot_1 - model.tension_gain[0] * model.spread[0] * Delta_1 * Delta_1
     S_22 = model.S_c[1, 1] * pivot_2 - model.tension_gain[1] * model.spread[1] * Delta_2 * Delta_2
     S_12 = model.S_c[0, 1]
     pivots = pivot_1 * pivot_2
-    per_determinant = 1.0 / (S_11 * S_22 - S_12 * S_12 * pivots)
-    K_11, K_22 = S_22 * pivot_1 * per_determinant, S_11 * pivot_2 * per_determinant
-    K_12 = -S_12 * pivots * per_determinant
+    inverse_determinant = 1.0 / (S_11 * S_22 - S_12 * S_12 * pivots)
+    K_11, K_22 = S_22 * pivot_1 * inverse_determinant, S_11 * pivot_2 * inverse_determinant
+    K_12 = -S_12 * pivots * inverse_determinant
     w.K_cc[0, 0], w.K_cc[0, 1] = K_11, K_12
     w.K_cc[1, 0], w.K_cc[1, 1] = K_12, K_22
     f_1, f_2 = K_11 * gap_1 + K_12 * gap_2, K_12 * gap_1 + K_22 * gap_2
@@ -136,8 +136,8 @@ def move_modes(model: Model, q_next: Array, q_prev: Array, f_c: Array) -> float:
     Returns how far the bridge moved in two samples (m).
     """
     total = f_c[0] + f_c[1]
-    travel = 0.0
-    for m in range(whole_vectors(model.modes)):
+    displacement_change = 0.0
+    for m in range(padded_length(model.modes)):
         q_next[m] -= model.C_q[m] * total
-        travel += q_next[m] - q_prev[m]
-    return travel
+        displacement_change += q_next[m] - q_prev[m]
+    return displacement_change

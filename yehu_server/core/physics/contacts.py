@@ -17,7 +17,13 @@ from __future__ import annotations
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.grid import overlap, place_cubic, place_linear, read, spread
+from yehu_server.core.physics.grid import (
+    cubic_weights,
+    interpolate,
+    linear_weights,
+    overlap,
+    spread,
+)
 from yehu_server.core.physics.layout import (
     BOW,
     CONTROLS_PER_FINGER,
@@ -58,7 +64,7 @@ def place_contacts(model: Model, c: Contacts, control: Array, bowed_string: int)
                 p = STRINGS * j + i
                 c.x[p], c.string[p] = x_f, i
                 position = max(1.0, min(x_f, model.bridge_x) / model.h[i])
-                c.first[p] = place_cubic(position, model.N[i], c.weights[p])
+                c.first[p] = cubic_weights(position, model.N[i], c.weights[p])
                 set_compliances(model, c, p)
     if fingers_moved:
         sort_fingers(model, c)
@@ -72,7 +78,7 @@ def place_hair(model: Model, c: Contacts, p: int, i: int, x: float) -> None:
     c.x[p], c.string[p] = x, i
     h = model.h[i]
     position = max(1.0, min(x / h, model.bridge_x / h - 1.0))
-    c.first[p] = place_linear(position, model.N[i], c.weights[p])
+    c.first[p] = linear_weights(position, model.N[i], c.weights[p])
     set_compliances(model, c, p)
 
 
@@ -102,7 +108,7 @@ def set_compliances(model: Model, c: Contacts, p: int) -> None:
 def free_displacement(c: Contacts, w: Work, u_next: Array, p: int) -> float:
     """Return I_p u^{n+1} as it would be without the forces of bow and fingers (m)."""
     i = c.string[p]
-    free = read(u_next[i], c.first[p], c.weights[p])
+    free = interpolate(u_next[i], c.first[p], c.weights[p])
     return float(free + w.tau[i] * w.Delta_u_at[p] + c.bridge_coupling[p] * w.f_c[i])
 
 
@@ -153,7 +159,7 @@ def move_strings(
         spread(u_next[i], model.bridge_first[i], model.bridge_weights[i], force)
     for a in range(near):
         for i in range(STRINGS):
-            p = STRINGS * c.near[a] + i
+            p = STRINGS * c.candidates[a] + i
             spread(u_next[i], c.first[p], c.weights[p], -model.spread[i] * w.f_f[p])
     if bowed:
         i = c.string[BOW]

@@ -33,9 +33,9 @@ def pseudorandom(number: int) -> float:
 
 MANTISSA_BITS = 52
 EXPONENT_OF_1 = 1023
-LEAST_EXPONENT, MOST_EXPONENT = -1000.0, 1000.0
+MIN_EXPONENT, MAX_EXPONENT = -1000.0, 1000.0
 R_1, R_2, R_3, R_4, R_5 = 1.0 / 2.0, -3.0 / 8.0, 5.0 / 16.0, -35.0 / 128.0, 63.0 / 256.0
-SLIGHT = 1e-3  # below it a few terms of the series are exact to rounding
+SERIES_BELOW = 1e-3  # below it a few terms of the series are exact to rounding
 
 # Minimax polynomials of sin(pi x) / x and cos(pi x) in x^2, for x
 # from -1/2 to 1/2 (off by 4e-16 and 2e-15), and of 2^x there (3e-18).
@@ -66,18 +66,18 @@ def sincospi(x: Any) -> tuple[Any, Any]:
     return x * sine, cosine
 
 
-sine_and_cosine = compiled(sincospi)  # for the kernel
+kernel_sincospi = compiled(sincospi)  # for the kernel
 sincospi = arithmetic(sincospi)
 
 
 def exp2(x: float) -> float:
-    """Return 2 to the power of `x`, which counts as -1000 below and as 1000 above that, to 4e-16.
+    """Return 2 to the power of `x`, clamped to -1000..1000, to 4e-16.
 
     Real time: safe.
     """
-    if math.isnan(x):  # which has no whole number beside it
+    if math.isnan(x):  # NaN cannot be rounded
         return x
-    x = min(max(x, LEAST_EXPONENT), MOST_EXPONENT)
+    x = min(max(x, MIN_EXPONENT), MAX_EXPONENT)
     exponent = np.rint(x)
     t = x - exponent
     t_2 = t * t
@@ -89,29 +89,29 @@ def exp2(x: float) -> float:
     return float(scale * ((low + t_4 * middle) + (t_4 * t_4) * high))
 
 
-power_of_2 = compiled(exp2)  # for the kernel
+kernel_exp2 = compiled(exp2)  # for the kernel
 exp2 = arithmetic(exp2)
 
 
 @compiled
 def one_minus_inverse_root(t: float) -> float:
     """1 - 1 / sqrt(1 + t) for t >= 0, to rounding of the result. Real time: safe."""
-    if t < SLIGHT:
+    if t < SERIES_BELOW:
         t_2 = t * t
         return float(R_1 * t + t_2 * ((R_2 + R_3 * t) + t_2 * (R_4 + R_5 * t)))
     root = math.sqrt(1.0 + t)
     return t / (root * (1.0 + root))
 
 
-# ---------------------------------------------------------------- of any number
+# ---------------------------------------------------------------- for any argument
 
 # The natural logarithm of 2 in two parts, the first of few bits: products with whole numbers are
 # exact.
 LN_2, LN_2_HIGH, LN_2_LOW = 0.6931471805599453, 0.693147180369123816490, 1.90821492927058770002e-10
-LN_10, MOST = 2.302585092994046, 690.0
+LN_10, MAX_EXP_ARGUMENT = 2.302585092994046, 690.0
 BITS_OF_ROOT_HALF = 0x3FE6A09E667F3BCD  # of the square root of 1/2
 # Minimax polynomial of asin(x) / x in x^2, for x from -1/2 to 1/2 (off by 2e-17).
-ARC = (
+ASIN_COEFFICIENTS = (
     1.0,
     0.16666666666664942,
     0.07500000000385201,
@@ -130,8 +130,8 @@ ARC = (
 
 @arithmetic
 def exp(x: float) -> float:
-    """Return e to the power of `x`, beyond -690 and 690 as there, to 6e-16. Real time: safe."""
-    x = min(max(x, -MOST), MOST)
+    """Return e to the power of `x`, clamped to -690..690, to 6e-16. Real time: safe."""
+    x = min(max(x, -MAX_EXP_ARGUMENT), MAX_EXP_ARGUMENT)
     exponent = np.rint(x / LN_2)
     return float(exp2(exponent) * exp2(((x - exponent * LN_2_HIGH) - exponent * LN_2_LOW) / LN_2))
 
@@ -226,14 +226,14 @@ def tan(x: float) -> float:
 @arithmetic
 def asin(x: float) -> float:
     """Return the angle (rad) whose sine is `x`, -1 to 1, to 4e-16. Real time: safe."""
-    size = abs(x)
-    t = x * x if size <= 0.5 else 0.5 * (1.0 - size)
-    root = size if size <= 0.5 else math.sqrt(t)
+    magnitude = abs(x)
+    t = x * x if magnitude <= 0.5 else 0.5 * (1.0 - magnitude)
+    root = magnitude if magnitude <= 0.5 else math.sqrt(t)
     series = 0.0
-    for term in ARC[::-1]:
+    for term in ASIN_COEFFICIENTS[::-1]:
         series = series * t + term
     angle = root * series
-    angle = angle if size <= 0.5 else 0.5 * math.pi - 2.0 * angle
+    angle = angle if magnitude <= 0.5 else 0.5 * math.pi - 2.0 * angle
     return float(angle if x >= 0.0 else -angle)
 
 
@@ -255,7 +255,7 @@ def decibels(power: Any) -> Any:
     return 10.0 / LN_10 * (exponent * LN_2 + rest)
 
 
-def each(function: Callable[[float], float], values: Iterable[float]) -> Any:
-    """Apply one of these to each number of an array, as Python."""
+def elementwise(function: Callable[[float], float], values: Iterable[float]) -> Any:
+    """Apply a scalar function to each element of an array; not compiled."""
     array = np.asarray(values, np.float64)
     return np.array([function(x) for x in array.ravel().tolist()]).reshape(array.shape)

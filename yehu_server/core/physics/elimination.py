@@ -40,14 +40,14 @@ def find_shared_nodes(model: Model, c: Contacts, near: int) -> None:
     for a in range(near):
         c.meets_previous[a] = 0
         for i in range(STRINGS):
-            p = STRINGS * c.near[a] + i
+            p = STRINGS * c.candidates[a] + i
             if c.bridge_coupling[p] != 0.0 or not share_no_node(c, p, BOW):
                 c.is_chain = 0
             for b in range(a - 1):
-                if not share_no_node(c, p, STRINGS * c.near[b] + i):
+                if not share_no_node(c, p, STRINGS * c.candidates[b] + i):
                     c.is_chain = 0
             if a > 0:
-                q = STRINGS * c.near[a - 1] + i
+                q = STRINGS * c.candidates[a - 1] + i
                 shared = overlap(c.first[p], c.weights[p], c.first[q], c.weights[q])
                 c.previous_coupling[a, i] = model.spread[i] * shared
                 if shared != 0.0:
@@ -74,12 +74,14 @@ def find_travel(
     detaching = False
     for a in range(near):
         for i in range(STRINGS):
-            p = STRINGS * c.near[a] + i
+            p = STRINGS * c.candidates[a] + i
             if c.is_chain:
                 w.bow_compliance[p] = -w.Delta_u_at[p] * bow_response[i]
             else:
                 w.bow_compliance[p] = compliance(model, c, w, p, BOW, bow_response)
-            w.travel[p] = free_displacement(c, w, u_next, p) - s.U[next_, c.near[a]] - w.eta_prev[p]
+            w.travel[p] = (
+                free_displacement(c, w, u_next, p) - s.U[next_, c.candidates[a]] - w.eta_prev[p]
+            )
             detaching |= may_detach(s, w, p, f_b, margin)
     return detaching
 
@@ -149,7 +151,7 @@ def factor_fingers(model: Model, s: Motion, c: Contacts, w: Work, near: int) -> 
     W_11, W_12, W_22 = 0.0, 0.0, 0.0
     WB_11, WB_12, WB_21, WB_22 = 0.0, 0.0, 0.0, 0.0
     for a in range(near):
-        p, q = STRINGS * c.near[a], STRINGS * c.near[a] + 1
+        p, q = STRINGS * c.candidates[a], STRINGS * c.candidates[a] + 1
         C_pp, C_pq, C_qq = c.self_compliance[p] + C_f, C_f, c.self_compliance[q] + C_f
         B_11, B_12, B_21, B_22 = w.Delta_u_at[p], 0.0, 0.0, w.Delta_u_at[q]
         if c.meets_previous[a]:
@@ -194,7 +196,7 @@ def substitute_forward(c: Contacts, w: Work, near: int) -> tuple[float, float]:
     sum_1, sum_2 = 0.0, 0.0
     f_p, f_q = 0.0, 0.0
     for a in range(near):
-        p, q = STRINGS * c.near[a], STRINGS * c.near[a] + 1
+        p, q = STRINGS * c.candidates[a], STRINGS * c.candidates[a] + 1
         travel_p, travel_q = w.travel[p], w.travel[q]
         if c.meets_previous[a]:
             travel_p -= c.previous_coupling[a, 0] * f_p
@@ -260,7 +262,7 @@ def back_substitute_chain(
     f_p, f_q = 0.0, 0.0
     for back in range(near):
         a = near - 1 - back
-        p, q = STRINGS * c.near[a], STRINGS * c.near[a] + 1
+        p, q = STRINGS * c.candidates[a], STRINGS * c.candidates[a] + 1
         travel_p = w.Delta_u_chain[a, 0, 0] * tau_1 + w.Delta_u_chain[a, 0, 1] * tau_2
         travel_q = w.Delta_u_chain[a, 1, 0] * tau_1 + w.Delta_u_chain[a, 1, 1] * tau_2
         if back > 0 and c.meets_previous[a + 1]:
@@ -284,7 +286,7 @@ def assemble_contacts(model: Model, s: Motion, c: Contacts, w: Work, near: int) 
     count = 0
     for a in range(near):
         for i in range(STRINGS):
-            p = STRINGS * c.near[a] + i
+            p = STRINGS * c.candidates[a] + i
             if w.g[p] > 0.0:
                 w.touching[count] = p
                 w.A_f[count] = contact_stiffness(model, s, w, p)

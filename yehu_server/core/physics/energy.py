@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.bow import contact_velocity
-from yehu_server.core.physics.grid import read
+from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import (
     BOW,
     CONSTRAINT_RESIDUAL,
@@ -30,7 +30,7 @@ from yehu_server.core.physics.layout import (
     STRINGS,
     V_B,
     V_R_RESIDUAL,
-    whole_vectors,
+    padded_length,
 )
 from yehu_server.core.physics.pluck import pluck_power
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
@@ -96,7 +96,7 @@ def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
         zeta_mean = 0.5 * (s.zeta[next_, i] + s.zeta[now, i])
         total += 0.5 * model.M_h * zeta_velocity**2 + 0.5 * model.K_h * zeta_mean**2
         total += 0.5 * model.epsilon_0 * s.z[i] ** 2
-    for m in range(whole_vectors(model.modes)):
+    for m in range(padded_length(model.modes)):
         velocity = (s.q[next_, m] - s.q[now, m]) / k
         mean = 0.5 * (s.q[next_, m] + s.q[now, m])
         total += 0.5 * model.M_m[m] * velocity**2 + 0.5 * model.K_m[m] * mean**2
@@ -109,7 +109,7 @@ def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
 
 
 @compiled
-def book(
+def record_energy(
     model: Model, s: Motion, c: Contacts, w: Work, control: Array, before: float, row: Array
 ) -> float:
     """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete.
@@ -119,7 +119,7 @@ def book(
     k = model.k
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     # Read back from the grid, not taken from the solver.
-    u_b = read(s.u[next_, c.string[BOW]], c.first[BOW], c.weights[BOW])
+    u_b = interpolate(s.u[next_, c.string[BOW]], c.first[BOW], c.weights[BOW])
     v_r = contact_velocity(model, c, u_b, s.u[prev], s.zeta[next_], s.zeta[prev]) - control[V_B]
 
     strings, hair, bridge, finger = 0.0, 0.0, 0.0, 0.0
@@ -127,7 +127,7 @@ def book(
         strings += string_loss(model, i, s.u[next_, i], s.u[prev, i])
         hair += model.R_h * ((s.zeta[next_, i] - s.zeta[prev, i]) / (2.0 * k)) ** 2
     bridge_velocity, Q = 0.0, 0.0
-    for m in range(whole_vectors(model.modes)):
+    for m in range(padded_length(model.modes)):
         velocity = (s.q[next_, m] - s.q[prev, m]) / (2.0 * k)
         bridge += model.R_m[m] * velocity**2
         bridge_velocity += velocity
@@ -139,7 +139,7 @@ def book(
         for i in range(STRINGS):
             p = STRINGS * j + i
             if w.g[p] != 0.0:
-                travel = read(s.u[next_, i], c.first[p], c.weights[p]) - s.U[next_, j]
+                travel = interpolate(s.u[next_, i], c.first[p], c.weights[p]) - s.U[next_, j]
                 travel -= w.eta_prev[p]
                 # Psi stands at n + 1/2 by now; the law uses it at n - 1/2.
                 Psi = s.Psi[p] - 0.5 * w.g[p] * travel
@@ -151,7 +151,7 @@ def book(
     losses = strings + bridge + finger + hair + friction + lifted + reset
     residual = 0.0
     for i in range(STRINGS):
-        at_bridge = read(s.u[next_, i], model.bridge_first[i], model.bridge_weights[i])
+        at_bridge = interpolate(s.u[next_, i], model.bridge_first[i], model.bridge_weights[i])
         residual = max(residual, abs(at_bridge - Q))
     row[ENERGY], row[POWER_IN] = stored, power
     row[LOSS_STRINGS], row[LOSS_BRIDGE], row[LOSS_FINGER] = strings, bridge, finger

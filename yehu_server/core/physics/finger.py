@@ -1,8 +1,8 @@
 """Fingers that stop the strings: [Yehu] eqs. (33)-(36), by energy quadratisation.
 
-Differs, each measured (docs/physics.md): the press is a positive force, negated here
-once; Psi is set to zero where there is no penetration or where it would be negative,
-and the energy so given up is booked (it makes case 2 of eq. (34) unreachable); a finger
+Differences from the paper, each measured (docs/physics.md): the press is a positive force, negated
+here once; Psi is set to zero where there is no penetration or where it would be negative, and the
+energy so given up is recorded in the ledger (it makes case 2 of eq. (34) unreachable); a finger
 without press returns to its rest height.
 """
 
@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.grid import read
+from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS
 from yehu_server.core.physics.power import power, prepare_power
 from yehu_server.core.physics.quantities import Quantities
@@ -52,7 +52,7 @@ def advance_finger(
 
 @compiled
 def reset_contact(s: Motion, w: Work, p: int, eta: float) -> None:
-    """Drop a quadratised potential without penetration, and book its energy."""
+    """Drop a quadratised potential without penetration, and add its energy to the ledger."""
     if s.Psi[p] != 0.0 and (eta <= 0.0 or s.Psi[p] < 0.0):
         w.dropped_Psi += 0.5 * s.Psi[p] * s.Psi[p]
         s.Psi[p] = 0.0
@@ -84,11 +84,11 @@ def limited_gradient(ghat: float, Psi: float, travel: float) -> float:
 def advance_fingers(
     model: Model, s: Motion, c: Contacts, w: Work, control: Array, next_: int, now: int, prev: int
 ) -> int:
-    """Advance the fingers free of contacts; list those that may touch a string in ``c.near``.
+    """Advance the fingers free of contacts; list those that may touch a string in ``c.candidates``.
 
     Returns their number. Writes what is known at n of their contacts: ghat, eta^{n-1}, Delta u^n.
     """
-    near, c.near_set = 0, 0
+    candidate_count, c.candidate_bits = 0, 0
     x_f, u_1, u_2 = -1.0, 0.0, 0.0
     for place in range(model.fingers):
         j = c.order[place]
@@ -96,10 +96,10 @@ def advance_fingers(
         U = s.U[now, j]
         if s.resting[j] and press <= 0.0:
             p, q = STRINGS * j, STRINGS * j + 1
-            if c.x[p] != x_f:  # fingers at rest mostly wait at one place
+            if c.x[p] != x_f:  # fingers at rest mostly share one position
                 x_f = c.x[p]
-                u_1 = read(s.u[now, 0], c.first[p], c.weights[p])
-                u_2 = read(s.u[now, 1], c.first[q], c.weights[q])
+                u_1 = interpolate(s.u[now, 0], c.first[p], c.weights[p])
+                u_2 = interpolate(s.u[now, 1], c.first[q], c.weights[q])
             if u_1 <= U and u_2 <= U:
                 s.U[next_, j] = U
                 continue
@@ -108,24 +108,24 @@ def advance_fingers(
         for i in range(STRINGS):
             p = STRINGS * j + i
             first, weights = c.first[p], c.weights[p]
-            eta = read(s.u[now, i], first, weights) - U
+            eta = interpolate(s.u[now, i], first, weights) - U
             reset_contact(s, w, p, eta)
             ghat = 0.0
             if eta > 0.0:
                 is_near = True
                 ghat = gradient(model, eta)
                 # The same I_f at all three times, so that the energy closes as x_f moves.
-                w.eta_prev[p] = read(s.u[prev, i], first, weights) - s.U[prev, j]
-                w.Delta_u_at[p] = read(s.Delta_u[i], first, weights)
+                w.eta_prev[p] = interpolate(s.u[prev, i], first, weights) - s.U[prev, j]
+                w.Delta_u_at[p] = interpolate(s.Delta_u[i], first, weights)
             w.g[p], w.ghat[p], w.f_f[p] = ghat, ghat, 0.0
         s.resting[j] = 0
         if is_near:
-            c.near[near] = j
-            c.near_set |= 1 << j
-            near += 1
+            c.candidates[candidate_count] = j
+            c.candidate_bits |= 1 << j
+            candidate_count += 1
         elif press <= 0.0 and s.U[next_, j] == U and s.U[prev, j] == U:
             s.resting[j] = 1
-    return near
+    return candidate_count
 
 
 @compiled
@@ -137,11 +137,11 @@ def may_detach(s: Motion, w: Work, p: int, f_b: float, margin: float) -> bool:
 
 
 @compiled
-def limit_gradients(s: Motion, c: Contacts, w: Work, near: int, f_b: float) -> None:
+def limit_gradients(s: Motion, c: Contacts, w: Work, candidate_count: int, f_b: float) -> None:
     """Write g = theta ghat of eq. (34) of every contact, for a friction force (N)."""
-    for a in range(near):
+    for a in range(candidate_count):
         for i in range(STRINGS):
-            p = STRINGS * c.near[a] + i
+            p = STRINGS * c.candidates[a] + i
             w.g[p] = limited_gradient(w.ghat[p], s.Psi[p], w.travel[p] - w.bow_compliance[p] * f_b)
 
 

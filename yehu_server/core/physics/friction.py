@@ -12,10 +12,10 @@ import math
 
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.elementary import (
+    kernel_exp2,
+    kernel_sincospi,
     log,
     one_minus_inverse_root,
-    power_of_2,
-    sine_and_cosine,
 )
 from yehu_server.core.physics.records import Model
 
@@ -77,7 +77,7 @@ def bristle_residual(
     deflection, dz = abs(z), side * dz
     steepness = m.per_v_s * m.per_v_s
     mu_range = mu_S - m.mu_C
-    stribeck = deflection_at_1 * mu_range * power_of_2(v_r * v_r * (-PER_LN_2 * steepness))
+    stribeck = deflection_at_1 * mu_range * kernel_exp2(v_r * v_r * (-PER_LN_2 * steepness))
     z_ss = deflection_at_1 * m.mu_C + stribeck  # |z_ss|, eq. (17)
     dlog_stribeck = -2.0 * v_r * steepness
     dz_ss, ddz_ss = (
@@ -93,7 +93,7 @@ def bristle_residual(
     if below_z_ss > 0.0:
         per_width = 1.0 / (stribeck + (deflection_at_1 * m.mu_C - z_ba))
         half_turns = (deflection - 0.5 * (z_ss + z_ba)) * per_width
-        sine, cosine = sine_and_cosine(half_turns)
+        sine, cosine = kernel_sincospi(half_turns)
         part = half_turns + 0.5  # 0 at breakaway, 1 at z_ss
         dangle = math.pi * (dz - part * dz_ss) * per_width
         ddangle = (-math.pi * part * ddz_ss - 2.0 * dangle * dz_ss) * per_width
@@ -130,7 +130,7 @@ def solve_elastic(
 ) -> tuple[bool, bool, float, float, float, float]:
     """Solve friction as if bristles did not slip (chi = 0).
 
-    That is linear but for epsilon_1(v_r), which takes one more step where it decreases slightly.
+    That is linear except for epsilon_1(v_r), which takes one more step where it decreases slightly.
 
     Returns
     -------

@@ -17,7 +17,7 @@ from yehu_server.core.physics.quantities import StringQuantities
 from yehu_server.core.physics.records import Array
 from yehu_server.errors import ParameterError
 
-LOWEST_RATE, HIGHEST_RATE = 22050.0, 192000.0  # Hz
+MIN_RATE, MAX_RATE = 22050.0, 192000.0  # Hz
 
 
 def least_spacing(string: StringQuantities, k: float, headroom: float = 1.0) -> float:
@@ -61,14 +61,14 @@ def check_rate(rate: float) -> None:
     ParameterError
         With the range.
     """
-    if not LOWEST_RATE <= rate <= HIGHEST_RATE:
+    if not MIN_RATE <= rate <= MAX_RATE:
         raise ParameterError(
-            f"sample rate: {rate} Hz is not within {LOWEST_RATE:g} to {HIGHEST_RATE:g} Hz"
+            f"sample rate: {rate} Hz is not within {MIN_RATE:g} to {MAX_RATE:g} Hz"
         )
 
 
 @compiled
-def _place(position: float, N: int, weights: Array, cubic: bool) -> int:
+def _write_weights(position: float, N: int, weights: Array, cubic: bool) -> int:
     l = int(position)
     l = max(1, min(l, N - 2))
     a = position - l
@@ -91,19 +91,19 @@ def _place(position: float, N: int, weights: Array, cubic: bool) -> int:
 
 
 @compiled
-def place_cubic(position: float, N: int, weights: Array) -> int:
+def cubic_weights(position: float, N: int, weights: Array) -> int:
     """Write the weights of a contact at `position` (in nodes, 1 to N-1); return its first node."""
-    return _place(position, N, weights, True)
+    return _write_weights(position, N, weights, True)
 
 
 @compiled
-def place_linear(position: float, N: int, weights: Array) -> int:
-    """As `place_cubic`, with linear interpolation between two nodes."""
-    return _place(position, N, weights, False)
+def linear_weights(position: float, N: int, weights: Array) -> int:
+    """As `cubic_weights`, with linear interpolation between two nodes."""
+    return _write_weights(position, N, weights, False)
 
 
 @compiled
-def read(u: Array, first: int, weights: Array) -> float:
+def interpolate(u: Array, first: int, weights: Array) -> float:
     """Return I u, the displacement at a contact (m)."""
     total = 0.0
     for j in range(STENCIL):

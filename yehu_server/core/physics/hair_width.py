@@ -26,15 +26,15 @@ from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.contacts import place_hair
 from yehu_server.core.physics.friction import solve_friction
 from yehu_server.core.physics.friction_curve import solve_curve
-from yehu_server.core.physics.grid import read
+from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import LEVELS, POINT, STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Contacts, Model, Motion, Refined, State, Work
 from yehu_server.core.physics.rosin_heat import static_coefficient
 from yehu_server.core.physics.torsion import twist_travel
 
-SETTLED = 1e-12  # m/s, by which the last solves change the velocities of the others
-MOST_SWEEPS = 100
+TOLERANCE = 1e-12  # m/s, by which the last solves change the velocities of the others
+MAX_SWEEPS = 100
 
 
 def prepare_width(refined: Any, quantities: Quantities) -> None:
@@ -56,7 +56,7 @@ def place_points(model: Model, c: Contacts, t: Refined, i: int, x_b: float) -> N
 
 @compiled
 def lift_points(m: Model, t: Refined, w: Work, string: int, bowed: bool) -> None:
-    """Take the deflection of bristles that are off the string; book its energy as a loss."""
+    """Take the deflection of bristles that are off the string; record its energy as a loss."""
     for e in range(t.points):
         for i in range(STRINGS):
             if t.z[e, i] != 0.0 and not (bowed and i == string):
@@ -69,8 +69,8 @@ def point_velocity(m: Model, s: Motion, c: Contacts, t: Refined, e: int, next_: 
     """Return the velocity of the string's surface on the hair at point `e`, bow at rest (m/s)."""
     p, prev = POINT + e, (next_ + 1) % LEVELS
     i = c.string[p]
-    travel = read(s.u[next_, i], c.first[p], c.weights[p])
-    travel -= read(s.u[prev, i], c.first[p], c.weights[p])
+    travel = interpolate(s.u[next_, i], c.first[p], c.weights[p])
+    travel -= interpolate(s.u[prev, i], c.first[p], c.weights[p])
     travel += t.zeta[next_, e, i] - t.zeta[prev, e, i] + twist_travel(t, i, STRINGS + e, next_)
     return float(0.5 * m.rate * travel)
 
@@ -81,7 +81,7 @@ def solve_points(m: Model, state: State, t: Refined, string: int, F_N: float) ->
 
     Returns the number of evaluations of the law.
 
-    Real time: safe; at most MOST_SWEEPS solves of each point.
+    Real time: safe; at most MAX_SWEEPS solves of each point.
     """
     iterations, sweeps, is_solved = 0, 0, True
     while True:
@@ -108,9 +108,9 @@ def solve_points(m: Model, state: State, t: Refined, string: int, F_N: float) ->
             f_b += t.epsilon_2 * v_r
             change = max(change, abs(f_b - t.f_b[e]) * mobility)
             t.f_b[e], t.v_r[e] = f_b, v_r
-        if t.points == 1 or change <= SETTLED or sweeps == MOST_SWEEPS:
+        if t.points == 1 or change <= TOLERANCE or sweeps == MAX_SWEEPS:
             break
-    if not is_solved or (t.points > 1 and change > 100.0 * SETTLED):
+    if not is_solved or (t.points > 1 and change > 100.0 * TOLERANCE):
         state.unconverged += 1
     for e in range(t.points):
         t.r[e] = 2.0 * m.rate * (t.z_bar[e] - t.z[e, string])

@@ -46,7 +46,7 @@ from yehu_server.core.physics.elimination import (
 )
 from yehu_server.core.physics.finger import advance_fingers, limit_gradients, prepare_fingers
 from yehu_server.core.physics.friction import Tangent, solve_friction
-from yehu_server.core.physics.grid import read
+from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import (
     BOW,
     BRIDGE_FORCE,
@@ -218,14 +218,14 @@ def step(m: Model, state: State, control: Array, next_: int, now: int, prev: int
 
     # Places of the contacts; fingers without forces, eq. (58). Independent of the strings' update.
     string, bowed = choose_string(m, s, c, w, control[F_N])
-    moved, were_near = place_contacts(m, c, control, string), c.near_set
+    moved, were_near = place_contacts(m, c, control, string), c.candidate_bits
     near = advance_fingers(m, s, c, w, control, next_, now, prev)
-    if moved or c.near_set != were_near:
+    if moved or c.candidate_bits != were_near:
         find_shared_nodes(m, c, near)
     Q = factor_fingers(m, s, c, w, near)
 
     # The bow, eqs. (46)-(49), and the fingers, eqs. (33)-(36).
-    w.Delta_u_at[BOW] = read(s.Delta_u[string], c.first[BOW], c.weights[BOW])
+    w.Delta_u_at[BOW] = interpolate(s.Delta_u[string], c.first[BOW], c.weights[BOW])
     bow_response = response(c, w, BOW)
     advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
     u_b = free_displacement(c, w, u_next, BOW)

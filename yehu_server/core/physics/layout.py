@@ -4,7 +4,7 @@ One record each, with room for the largest grid, so that every sample rate runs 
 same compiled code and a single address reaches everything. MODEL is written once
 per sample rate; STATE is what a step changes: ``motion`` is the state of the instrument,
 ``contacts`` is where bow and fingers touch the strings, ``work`` holds the intermediate results of
-one step. An instrument at rest is all zeros but for the fingers' heights. docs/notation.md
+one step. An instrument at rest is all zeros except for the fingers' heights. docs/notation.md
 has each field's symbol, unit and equation.
 
 Indices are unsigned: a negative one costs a comparison at every use, and keeps loops from
@@ -37,7 +37,7 @@ MAX_POINTS = 4  # across the width of the hair
 BOW = MAX_FINGERS * STRINGS  # finger j on string i is contact 2 j + i
 POINT = BOW + 1  # the first of the points across the width
 MAX_CONTACTS = POINT + MAX_POINTS
-HEATS = 256  # of the table of friction over temperature
+HEAT_COUNT = 256  # of the table of friction over temperature
 LINE_BYTES = 64  # of the processor's cache: vectors within one are read and written at once
 
 
@@ -129,7 +129,7 @@ MODEL = lined_up(
         ("per_grain", np.float64),
         # the contact's temperature
         ("is_thermal", np.uint8),
-        ("softened", np.float64, HEATS),
+        ("softened", np.float64, HEAT_COUNT),
         ("per_heat", np.float64),
         ("cooled", np.float64),
         # finger, eqs. (33)-(36)
@@ -188,8 +188,8 @@ CONTACTS = lined_up(
         ("bridge_coupling", np.float64, MAX_CONTACTS),
         # fingers: from the loop to the bridge, and those of them that may touch a string
         ("order", np.uint8, MAX_FINGERS),
-        ("near", np.uint8, MAX_FINGERS),
-        ("near_set", np.int64),
+        ("candidates", np.uint8, MAX_FINGERS),
+        ("candidate_bits", np.int64),
         ("is_chain", np.uint8),
         ("meets_previous", np.uint8, MAX_FINGERS),
         ("previous_coupling", np.float64, (MAX_FINGERS, STRINGS)),
@@ -301,7 +301,7 @@ CONTROLS_PER_FINGER = 2
 
 
 def control_columns(fingers: int) -> int:
-    """Columns of the control array of an instrument with so many fingers."""
+    """Columns of the control array of an instrument with a number of fingers."""
     return FINGER_CONTROLS + CONTROLS_PER_FINGER * fingers
 
 
@@ -321,12 +321,12 @@ PROBES_PER_FINGER = 3
 
 
 def probe_columns(fingers: int) -> int:
-    """Columns of the probe array of an instrument with so many fingers."""
+    """Columns of the probe array of an instrument with a number of fingers."""
     return FINGER_PROBES + PROBES_PER_FINGER * fingers
 
 
 @compiled
-def whole_vectors(count: int) -> int:
+def padded_length(count: int) -> int:
     """Round a count up to whole vectors.
 
     A loop over the numbers left over, one by one, costs as much as the loop over vectors.

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled, uncompiled
-from yehu_server.core.physics.grid import place_cubic, read, spread
+from yehu_server.core.physics.grid import cubic_weights, interpolate, spread
 from yehu_server.core.physics.layout import F_PLUCK, GHOST, POINTS, X_PLUCK
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
 from yehu_server.core.physics.string import set_Delta_u, support
@@ -24,10 +24,10 @@ def pluck(model: Model, s: Motion, c: Contacts, w: Work, control: Array, u_next:
     if x != c.x_pluck or i != c.pluck_string:
         c.x_pluck, c.pluck_string = x, i
         position = max(1.0, min(x, model.bridge_x) / model.h[i])
-        c.pluck_first = place_cubic(position, model.N[i], c.pluck_weights)
+        c.pluck_first = cubic_weights(position, model.N[i], c.pluck_weights)
     moved = model.spread[i] * abs(force)
     spread(u_next[i], c.pluck_first, c.pluck_weights, moved)
-    w.Delta_u_travel[i] += moved * read(s.Delta_u[i], c.pluck_first, c.pluck_weights)
+    w.Delta_u_travel[i] += moved * interpolate(s.Delta_u[i], c.pluck_first, c.pluck_weights)
 
 
 @compiled
@@ -36,8 +36,8 @@ def pluck_power(model: Model, c: Contacts, control: Array, u_next: Array, u_prev
     if control[F_PLUCK] == 0.0:
         return 0.0
     i = c.pluck_string
-    travel = read(u_next[i], c.pluck_first, c.pluck_weights)
-    travel -= read(u_prev[i], c.pluck_first, c.pluck_weights)
+    travel = interpolate(u_next[i], c.pluck_first, c.pluck_weights)
+    travel -= interpolate(u_prev[i], c.pluck_first, c.pluck_weights)
     return float(abs(control[F_PLUCK]) * travel / (2.0 * model.k))
 
 
@@ -61,7 +61,7 @@ def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: flo
     u = np.zeros(POINTS)
     u[GHOST : GHOST + intervals + 1] = shape
     first, weights = int(m["bridge_first"][i]), m["bridge_weights"][i]
-    at_bridge = uncompiled(read)(u, first, weights) / float((weights * weights).sum())
+    at_bridge = uncompiled(interpolate)(u, first, weights) / float((weights * weights).sum())
     u[GHOST + first : GHOST + first + len(weights)] -= weights * at_bridge
     uncompiled(support)(u, intervals)
     s["u"][:, i, :] = u

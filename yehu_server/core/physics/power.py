@@ -11,23 +11,23 @@ from __future__ import annotations
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import EXPONENT_OF_1, MANTISSA_BITS, each, exp2
+from yehu_server.core.physics.elementary import EXPONENT_OF_1, MANTISSA_BITS, elementwise, exp2
 from yehu_server.core.physics.elementary import power as power_of
 from yehu_server.core.physics.records import Tables
 
-EXPONENTS = 2048  # of all floats
+EXPONENT_COUNT = 2048  # of all floats
 INTERVAL_BITS = 7
 INTERVALS = 1 << INTERVAL_BITS
 TERMS = 5
 INTERVAL_SHIFT = MANTISSA_BITS - INTERVAL_BITS
 MANTISSA_MASK = (1 << MANTISSA_BITS) - 1
 BITS_OF_1 = EXPONENT_OF_1 << MANTISSA_BITS
-EXTREME = 400  # a power of two that no number of the model comes near
+EXTREME_EXPONENT = 400  # a power of two that no number of the model comes near
 
 TABLES = np.dtype(
     [
         ("series", np.float64, TERMS),
-        ("of_exponent", np.float64, EXPONENTS),
+        ("of_exponent", np.float64, EXPONENT_COUNT),
         ("per_midpoint", np.float64, INTERVALS),
         ("of_midpoint", np.float64, INTERVALS),
     ],
@@ -37,10 +37,13 @@ TABLES = np.dtype(
 
 def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
     """Write the tables by which `power` finds `factor` x^`exponent` (0 to 2)."""
-    twos = np.arange(-EXTREME, EXTREME + 1)
+    twos = np.arange(-EXTREME_EXPONENT, EXTREME_EXPONENT + 1)
     coarse = float(np.float32(exponent))  # a product with this is not rounded
-    of_exponent = each(exp2, coarse * twos) * each(exp2, (exponent - coarse) * twos)
-    known = np.clip(np.arange(EXPONENTS) - EXPONENT_OF_1, -EXTREME, EXTREME) + EXTREME
+    of_exponent = elementwise(exp2, coarse * twos) * elementwise(exp2, (exponent - coarse) * twos)
+    known = (
+        np.clip(np.arange(EXPONENT_COUNT) - EXPONENT_OF_1, -EXTREME_EXPONENT, EXTREME_EXPONENT)
+        + EXTREME_EXPONENT
+    )
     tables["of_exponent"] = factor * of_exponent[known]
     per_midpoint = 1.0 / (1.0 + (np.arange(INTERVALS) + 0.5) / INTERVALS)
     tables["per_midpoint"] = per_midpoint
@@ -58,7 +61,7 @@ def power(tables: Tables, x: float) -> float:
     Below 1e-120 and above 1e120 it is about what it is there. Real time: safe.
     """
     bits = np.float64(x).view(np.uint64)
-    exponent = (bits >> np.uint64(MANTISSA_BITS)) & np.uint64(EXPONENTS - 1)
+    exponent = (bits >> np.uint64(MANTISSA_BITS)) & np.uint64(EXPONENT_COUNT - 1)
     interval = (bits >> np.uint64(INTERVAL_SHIFT)) & np.uint64(INTERVALS - 1)
     part_bits = np.uint64((bits & np.uint64(MANTISSA_MASK)) | np.uint64(BITS_OF_1))
     t = part_bits.view(np.float64) * tables.per_midpoint[interval] - 1.0

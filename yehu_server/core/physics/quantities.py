@@ -19,7 +19,7 @@ from yehu_server.util.documents import Document, Fields
 from yehu_server.util.values import brief, number
 from yehu_server.util.values import choice as chosen
 
-MOST_BASES = 8
+MAX_BASES = 8
 BODY_FILE = Path(__file__).with_name("body.json")
 
 
@@ -275,10 +275,8 @@ def _override_all(base: Quantities, table: Fields, folder: Path, depth: int) -> 
     """As `override`, of a file on which `depth` others are based."""
 
     def read_base(name: Any) -> Quantities:
-        if depth == MOST_BASES:
-            raise ParameterError(
-                f"{brief(name)}: more than {MOST_BASES} files are based on another"
-            )
+        if depth == MAX_BASES:
+            raise ParameterError(f"{brief(name)}: more than {MAX_BASES} files are based on another")
         return _read_quantities(folder / str(name), depth + 1)
 
     with table.at():

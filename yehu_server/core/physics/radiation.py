@@ -17,7 +17,7 @@ from yehu_server.core.physics.elementary import (
     asin,
     cos,
     decibels,
-    each,
+    elementwise,
     exp,
     log,
     power,
@@ -28,7 +28,7 @@ from yehu_server.core.physics.quantities import Body
 from yehu_server.core.physics.records import Model, Motion
 from yehu_server.errors import ParameterError
 
-ROUNDS = 6  # of the fit; over 22.05 to 192 kHz they bring 1.7 dB of error down to 0.4
+FIT_ROUNDS = 6  # of the fit; over 22.05 to 192 kHz they bring 1.7 dB of error down to 0.4
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 
@@ -181,11 +181,11 @@ def refit(body: Body, rate: float) -> tuple[Floats, Floats]:
     radius = np.array([power(radius, body.radiation_rate / rate) for radius, _ in poles])
     below_nyquist = angle < 0.98 * math.pi
     angle, radius = angle[below_nyquist], radius[below_nyquist]
-    a_1, a_2 = -2.0 * radius * each(cos, angle), radius * radius
+    a_1, a_2 = -2.0 * radius * elementwise(cos, angle), radius * radius
 
     band_edge = min(16e3, 0.45 * rate)
     measured_edge = body.radiation_rate / 2.0
-    low = 30.0 * each(exp, np.arange(500) / 499.0 * log(2e3 / 30.0))
+    low = 30.0 * elementwise(exp, np.arange(500) / 499.0 * log(2e3 / 30.0))
     audible = np.concatenate([low, np.linspace(2e3, band_edge, 900)[1:]])
     above = np.linspace(band_edge, rate / 2.0, 600)[1:]
     wanted_audible, wanted_above = target(audible), target(np.minimum(above, measured_edge))
@@ -204,7 +204,7 @@ def refit(body: Body, rate: float) -> tuple[Floats, Floats]:
     ]
     columns = np.array([*signals, *delays(z_1, MAX_TAPS)])  # real parts, then imaginary ones
     size = np.sqrt((columns * columns * weight * weight).sum(axis=(1, 2)))
-    for _ in range(ROUNDS):
+    for _ in range(FIT_ROUNDS):
         weighted = columns * weight / size[:, np.newaxis, np.newaxis]
         rows = 2 * len(frequency_hz)
         solution = least_squares(weighted.reshape(-1, rows), (wanted * weight).reshape(rows)) / size

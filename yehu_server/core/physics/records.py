@@ -130,8 +130,8 @@ class Contacts(Protocol):
     self_compliance: Array
     bridge_coupling: Array
     order: NDArray[np.uint8]
-    near: NDArray[np.uint8]
-    near_set: int
+    candidates: NDArray[np.uint8]
+    candidate_bits: int
     is_chain: int
     meets_previous: NDArray[np.uint8]
     previous_coupling: Array

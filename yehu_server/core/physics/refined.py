@@ -39,7 +39,7 @@ from yehu_server.core.physics.elimination import (
 )
 from yehu_server.core.physics.finger import advance_fingers, limit_gradients
 from yehu_server.core.physics.friction_curve import prepare_friction
-from yehu_server.core.physics.grid import read, spread
+from yehu_server.core.physics.grid import interpolate, spread
 from yehu_server.core.physics.hair_width import (
     hair_energy,
     hair_loss,
@@ -161,12 +161,14 @@ def step(
     # What each point would see without friction, and how friction moves it and the others.
     for e in range(t.points):
         p = POINT + e
-        w.Delta_u_at[p] = read(s.Delta_u[string], c.first[p], c.weights[p])
+        w.Delta_u_at[p] = interpolate(s.Delta_u[string], c.first[p], c.weights[p])
         for column, each in enumerate(response(c, w, p)):
             t.responses[e, column] = each
         advance_hair(m, t.zeta[next_, e], t.zeta[now, e], t.zeta[prev, e])
         yield_to_point(m, t, string, e, c.x[p])
-        travel = free_displacement(c, w, u_next, p) - read(u_prev[string], c.first[p], c.weights[p])
+        travel = free_displacement(c, w, u_next, p) - interpolate(
+            u_prev[string], c.first[p], c.weights[p]
+        )
         travel += t.zeta[next_, e, string] - t.zeta[prev, e, string]
         travel += twist_travel(t, string, STRINGS + e, next_)
         t.free[e] = 0.5 * m.rate * travel - control[V_B]
@@ -225,7 +227,7 @@ def eliminate_fingers(
     """
     s, c, w = state.motion, state.contacts, state.work
     c.is_chain = 0
-    w.Delta_u_at[BOW] = read(s.Delta_u[c.string[BOW]], c.first[BOW], c.weights[BOW])
+    w.Delta_u_at[BOW] = interpolate(s.Delta_u[c.string[BOW]], c.first[BOW], c.weights[BOW])
     f_b, margin = 0.0, 0.0
     if bowed:
         viscous = FRICTION_MARGIN * t.epsilon_2 * abs(t.free[0])
@@ -282,10 +284,13 @@ def stored_energy(m: Model, t: Refined, next_: int, now: int) -> float:
 
 
 @compiled
-def book_points(
+def record_points(
     m: Model, state: State, t: Refined, control: Array, before: float, row: Array
 ) -> float:
-    """Put torsion, hair and friction of all points into a row of the ledger, as ``energy.book``."""
+    """Write torsion, hair and friction of all points to a row of the ledger.
+
+    As ``energy.record_energy`` does.
+    """
     s, c = state.motion, state.contacts
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     stored = stored_energy(m, t, next_, now)

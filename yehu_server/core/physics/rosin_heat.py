@@ -16,12 +16,12 @@ from __future__ import annotations
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import each, exp
-from yehu_server.core.physics.layout import HEATS, STRINGS
+from yehu_server.core.physics.elementary import elementwise, exp
+from yehu_server.core.physics.layout import HEAT_COUNT, STRINGS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Model, Motion, Work
 
-HOTTEST = 3.5  # v_s; by there the Stribeck curve has fallen to mu_C
+MAX_SLIP_SPEED = 3.5  # v_s; by there the Stribeck curve has fallen to mu_C
 
 
 def prepare_heat(model: np.void, quantities: Quantities) -> None:
@@ -30,12 +30,12 @@ def prepare_heat(model: np.void, quantities: Quantities) -> None:
     model["is_thermal"] = bow.friction == "thermal"
     if not model["is_thermal"]:
         return
-    v_r = np.linspace(0.0, HOTTEST * bow.v_s, 8 * HEATS)
-    mu = bow.mu_C + (bow.mu_S - bow.mu_C) * each(exp, -((v_r / bow.v_s) ** 2))
+    v_r = np.linspace(0.0, MAX_SLIP_SPEED * bow.v_s, 8 * HEAT_COUNT)
+    mu = bow.mu_C + (bow.mu_S - bow.mu_C) * elementwise(exp, -((v_r / bow.v_s) ** 2))
     w = np.maximum.accumulate(mu * v_r)  # where it would fall, the contact runs through
-    heats = np.linspace(0.0, w[-1], HEATS)
+    heats = np.linspace(0.0, w[-1], HEAT_COUNT)
     model["softened"] = np.interp(heats, w, mu)
-    model["per_heat"] = (HEATS - 1) / w[-1]
+    model["per_heat"] = (HEAT_COUNT - 1) / w[-1]
     model["cooled"] = 1.0 - exp(-model["k"] / bow.cooling_time)
     model["per_v_s"] = 0.0  # friction does not depend on the speed itself
 
@@ -45,7 +45,7 @@ def static_coefficient(m: Model, w: float) -> float:
     """The static friction coefficient of a contact at a temperature w (m/s)."""
     if m.is_thermal == 0:
         return float(m.mu_S)
-    at = min(w * m.per_heat, HEATS - 1.000001)
+    at = min(w * m.per_heat, HEAT_COUNT - 1.000001)
     cell = int(at)
     low, high = m.softened[cell], m.softened[cell + 1]
     return float(low + (at - cell) * (high - low))

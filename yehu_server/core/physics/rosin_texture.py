@@ -14,11 +14,11 @@ import math
 
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.elementary import pseudorandom
-from yehu_server.core.physics.grid import read
+from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import BOW, STRINGS, TEXTURE, Y_B
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion
 
-LEAST = 0.05  # of the friction coefficients; without friction the law has no scale
+MIN_FRICTION_FACTOR = 0.05  # of the friction coefficients; without friction the law has no scale
 
 
 @compiled
@@ -52,6 +52,6 @@ def grip(m: Model, s: Motion, c: Contacts, control: Array, now: int) -> float:
     if depth == 0.0:
         return 1.0
     i = c.string[BOW]
-    carried = read(s.u[now, i], c.first[BOW], c.weights[BOW]) + s.zeta[now, i]
+    carried = interpolate(s.u[now, i], c.first[BOW], c.weights[BOW]) + s.zeta[now, i]
     place = (control[Y_B] - carried) * m.per_grain
-    return float(max(LEAST, 1.0 + depth * texture(s, place, STRINGS * m.hair + i)))
+    return float(max(MIN_FRICTION_FACTOR, 1.0 + depth * texture(s, place, STRINGS * m.hair + i)))

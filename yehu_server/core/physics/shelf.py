@@ -17,7 +17,7 @@ from yehu_server.core.physics.elementary import exp10, sincospi, tan
 Array = Any
 
 Q = 1.5  # steeper than a shelf without resonance: a few decibels beyond it on either side
-HIGHEST = 0.45  # of the sample rate
+MAX_CORNER_OF_RATE = 0.45  # of the sample rate
 
 SHELF = np.dtype(
     [
@@ -55,7 +55,7 @@ def shelved(s: Any, x: float, gain_db: float, frequency: float) -> float:
         s.gain_db, s.frequency = gain_db, frequency
         root = exp10(gain_db / 80.0)
         half = root * root  # amplitude, of half the decibels
-        g = tan(math.pi * min(frequency / s.rate, HIGHEST)) * root
+        g = tan(math.pi * min(frequency / s.rate, MAX_CORNER_OF_RATE)) * root
         s.a[0] = 1.0 / (1.0 + g * (g + 1.0 / Q))
         s.a[1] = g * s.a[0]
         s.a[2] = g * s.a[1]
@@ -73,7 +73,7 @@ def shelved(s: Any, x: float, gain_db: float, frequency: float) -> float:
 def shelf_gain(frequencies: Array, rate: float, gain_db: float, frequency: float) -> Array:
     """Amplitude factor at some frequencies (Hz) up to half the sample rate (Hz), closed form."""
     half = exp10(gain_db / 40.0)
-    middle = tan(math.pi * min(frequency / rate, HIGHEST))
+    middle = tan(math.pi * min(frequency / rate, MAX_CORNER_OF_RATE))
     sine, cosine = sincospi(np.asarray(frequencies) / rate)
     t = sine / cosine / middle
     t_2 = t * t

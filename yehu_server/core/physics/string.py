@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import each, sin
+from yehu_server.core.physics.elementary import elementwise, sin
 from yehu_server.core.physics.grid import intervals
-from yehu_server.core.physics.layout import GHOST, LEVELS, STENCIL, whole_vectors
+from yehu_server.core.physics.layout import GHOST, LEVELS, STENCIL, padded_length
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Motion, Work
 
@@ -36,7 +36,7 @@ def felt_at_nodes(L: float, N: int, quantities: Quantities) -> np.ndarray:
     """
     nodes, bridge = np.arange(1, N), quantities.bridge_x * N / L
     behind = np.where(nodes > int(bridge) + STENCIL // 2, (nodes - bridge) / (N - bridge), 0.0)
-    return np.asarray(quantities.felt_loss * each(sin, np.pi * behind) ** 2)
+    return np.asarray(quantities.felt_loss * elementwise(sin, np.pi * behind) ** 2)
 
 
 @compiled
@@ -136,7 +136,7 @@ def advance_nodes(
     Source: [Yehu] eq. (32) with simple supports, eq. (3).
     """
     squared_1, travel_1, squared_2, travel_2 = 0.0, 0.0, 0.0, 0.0
-    for l in range(whole_vectors(N - 1)):
+    for l in range(padded_length(N - 1)):
         at = GHOST + 1 + l
         squared, travel = advance_node(
             u_next[0], u[0], u_prev[0], Delta_u[0], inside[0], held[0], at, B[0], C[0]

@@ -20,7 +20,7 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.layout import GHOST, whole_vectors
+from yehu_server.core.physics.layout import GHOST, padded_length
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Motion, Work
 
@@ -62,7 +62,7 @@ def move_by_tension(model: Model, s: Motion, w: Work, u_next: Array) -> None:
     tau_1, tau_2 = w.tau[0], w.tau[1]
     if tau_1 == 0.0 and tau_2 == 0.0:
         return
-    for l in range(whole_vectors(max(model.N[0], model.N[1]) - 1)):
+    for l in range(padded_length(max(model.N[0], model.N[1]) - 1)):
         at = GHOST + 1 + l
         u_next[0, at] += tau_1 * s.Delta_u[0, at] * model.inside[0, at]
         u_next[1, at] += tau_2 * s.Delta_u[1, at] * model.inside[1, at]

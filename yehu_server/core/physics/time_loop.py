@@ -20,7 +20,7 @@ from yehu_server.compile.jit import (
 )
 from yehu_server.compile.memory import carray
 from yehu_server.core.physics import kernel, refined
-from yehu_server.core.physics.energy import book, stored_energy
+from yehu_server.core.physics.energy import record_energy, stored_energy
 from yehu_server.core.physics.layout import (
     CONTROLS_PER_FINGER,
     FINGER_CONTROLS,
@@ -118,7 +118,7 @@ def advance_by(
 
 
 @native
-def advance_booked(
+def advance_with_ledger(
     which: int, model: Any, state: Any, more: Any, controls: Any, probes: Any, ledger: Any, end: int
 ) -> None:
     """As `advance_by` from the first row on, and keep the energy ledger.
@@ -128,7 +128,7 @@ def advance_booked(
     """
     m, s = carray(model, (1,), MODEL)[0], carray(state, (1,), STATE)[0]
     rows, out = control_rows(m, controls, end), probe_rows(m, probes, end)
-    booked = carray(ledger, (end, len(LEDGER)), np.float64)
+    ledger_rows = carray(ledger, (end, len(LEDGER)), np.float64)
     level = int(s.motion.level)
     stored = stored_energy(m, s.motion, level, (level + 2) % LEVELS)
     stored_more = 0.0
@@ -138,13 +138,13 @@ def advance_booked(
     for n in range(end):
         advance_by(which, model, state, more, controls, probes, n, n + 1)
         if out[n, ITERATIONS] < 0.0:  # lost, and at rest
-            booked[n] = np.nan
+            ledger_rows[n] = np.nan
             stored, stored_more = 0.0, 0.0
             continue
-        stored = book(m, s.motion, s.contacts, s.work, rows[n], stored, booked[n])
+        stored = record_energy(m, s.motion, s.contacts, s.work, rows[n], stored, ledger_rows[n])
         if which != 0:
             t = carray(more, (1,), REFINED)[0]
-            stored_more = refined.book_points(m, s, t, rows[n], stored_more, booked[n])
+            stored_more = refined.record_points(m, s, t, rows[n], stored_more, ledger_rows[n])
 
 
 def run(
@@ -165,7 +165,7 @@ def run(
     controls, probes : ndarray [shape=(frames, columns)]
         As of ``kernel.advance``; C-contiguous.
     ledger : ndarray [shape=(frames, len(LEDGER))], optional
-        As of `advance_booked`; C-contiguous.
+        As of `advance_with_ledger`; C-contiguous.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def run(
     arrays = (model, state, model if more is None else more, controls, probes)
     places = [array.ctypes.data for array in arrays]
     if ledger is not None:
-        advance_booked.call(which, *places, ledger.ctypes.data, frames)
+        advance_with_ledger.call(which, *places, ledger.ctypes.data, frames)
     elif which == 0:
         advance.call(*places, 0, frames)
     else:

@@ -23,14 +23,15 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.elementary import cos, each, exp, sin, sine_and_cosine, tanh
+from yehu_server.core.physics.elementary import cos, elementwise, exp, kernel_sincospi, sin, tanh
 from yehu_server.core.physics.layout import LEVELS, MAX_TWISTS, STRINGS, VECTOR
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Contacts, Model, Refined, Work
 from yehu_server.errors import ParameterError
 
-HIGHEST = 0.9  # of half the sample rate: modes above are left out
-FADED = 1e-30  # m; numbers near the least that there are would cost a hundred times the others
+MAX_OF_NYQUIST = 0.9  # of half the sample rate: modes above are left out
+# Denormal numbers would cost a hundred times the others.
+NEGLIGIBLE_M = 1e-30
 
 
 def prepare_torsion(refined: Any, quantities: Quantities, k: float) -> None:
@@ -45,18 +46,18 @@ def prepare_torsion(refined: Any, quantities: Quantities, k: float) -> None:
     x_c, most = quantities.bridge_x, 0
     for i, string in enumerate(quantities.strings):
         omega = np.pi * np.arange(1, MAX_TWISTS + 1) / x_c * math.sqrt(string.G / string.rho)
-        omega = omega[omega * k < HIGHEST * np.pi]
+        omega = omega[omega * k < MAX_OF_NYQUIST * np.pi]
         if len(omega) == 0:
             raise ParameterError(
                 f"string_{i + 1}: G {string.G:g} Pa puts its torsional modes above this sample rate"
             )
         sigma = omega / (2.0 * string.Q_t)
         ringing = np.sqrt(omega**2 - sigma**2)
-        decay, loss = each(exp, -sigma * k), each(tanh, sigma * k)
+        decay, loss = elementwise(exp, -sigma * k), elementwise(tanh, sigma * k)
         modes = slice(0, len(omega))
         # q[n+1] = A q[n] + B q[n-1] + C f is sampled from the mode that k f sets off.
-        A = 2.0 * decay * each(cos, ringing * k)
-        C = 4.0 * k / (string.rho_A * x_c) * decay * each(sin, ringing * k) / ringing
+        A = 2.0 * decay * elementwise(cos, ringing * k)
+        C = 4.0 * k / (string.rho_A * x_c) * decay * elementwise(sin, ringing * k) / ringing
         refined["A_t"][i, modes], refined["B_t"][i, modes] = A, -(decay**2)
         refined["C_t"][i, modes] = C
         # The same as M delta_tt q + R delta_t. q + K q = f, for the ledger.
@@ -69,7 +70,9 @@ def prepare_torsion(refined: Any, quantities: Quantities, k: float) -> None:
 
 def largest_yielding(refined: np.void) -> float:
     """Return how far a newton moves the surface by torsion within a step, at most (m)."""
-    shapes = each(sin, math.pi * np.outer(np.linspace(0.0, 0.5, 101), np.arange(1, MAX_TWISTS + 1)))
+    shapes = elementwise(
+        sin, math.pi * np.outer(np.linspace(0.0, 0.5, 101), np.arange(1, MAX_TWISTS + 1))
+    )
     return float((shapes[:, np.newaxis] ** 2 * refined["C_t"]).sum(axis=2).max())
 
 
@@ -80,7 +83,7 @@ def place_twist(m: Model, t: Refined, place: int, x: float) -> None:
         return
     t.twist_x[place] = x
     part = max(0.0, min(x / m.bridge_x, 1.0))
-    minus_cosine, sine = sine_and_cosine(part - 0.5)  # -cos(pi part) and sin(pi part)
+    minus_cosine, sine = kernel_sincospi(part - 0.5)  # -cos(pi part) and sin(pi part)
     before, shape = 0.0, sine
     for n in range(MAX_TWISTS):
         t.twist_shapes[place, n] = shape
@@ -112,10 +115,10 @@ def advance_torsion(
     for i in range(STRINGS):
         for n in range(t.twists):
             free = t.A_t[i, n] * t.twist[now, i, n] + t.B_t[i, n] * t.twist[prev, i, n]
-            t.twist[next_, i, n] = free if abs(free) > FADED else 0.0
+            t.twist[next_, i, n] = free if abs(free) > NEGLIGIBLE_M else 0.0
         t.skin_drag[i] = 0.0
         for a in range(near):  # from the loop to the bridge: the last one holds the string
-            p = STRINGS * c.near[a] + i
+            p = STRINGS * c.candidates[a] + i
             if w.ghat[p] > 0.0:
                 t.skin_drag[i] = 0.5 * m.rate * t.R_skin
                 place_twist(m, t, i, c.x[p])

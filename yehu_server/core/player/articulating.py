@@ -8,7 +8,6 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player import notes, right_hand
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.gestures import (
-    AGAIN,
     AT,
     AT_SHARE,
     BOW_COUNT,
@@ -17,13 +16,14 @@ from yehu_server.core.player.gestures import (
     FINGER_STEPS,
     GLIDE,
     IS_ON,
+    MAX_ROUNDS,
     RAMP,
     RAMP_SHARE,
+    REPEAT_MS,
     SEMITONES,
     SHAPES,
-    SOONER,
+    SHORTENING,
     SPEED,
-    TIMES,
     TURNS,
     WEIGHT,
     begin_slide,
@@ -37,8 +37,8 @@ from yehu_server.core.player.notes import BEND_RAMP_MS
 from yehu_server.core.player.phrasing import STEP_MS
 from yehu_server.core.player.velocity import has_risen
 
-EACH_MS = 1e3 * HOP_S  # from one call of `articulate` to the next
-SOONEST = 0.55  # of the time between rounds, at least: as quick as hands go
+HOP_MS = 1e3 * HOP_S  # from one call of `articulate` to the next
+MIN_ROUND_FRACTION = 0.55  # of the time between rounds, at least: as quick as hands go
 
 
 @compiled_exactly
@@ -55,20 +55,20 @@ def articulate(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def time_of(step: Any, pace: float, length: float) -> float:
+def time_of(step: Any, time_factor: float, length: float) -> float:
     """When a step is due (s after its round began)."""
-    return float(1e-3 * pace * step[AT] + step[AT_SHARE] * length)
+    return float(1e-3 * time_factor * step[AT] + step[AT_SHARE] * length)
 
 
 @compiled_exactly
 def begin_again(track: Any, row: int, count: int, now: float) -> None:
     """Begin a hand's steps once more, where all are done and they are to come again by now."""
-    if SHAPES[row, AGAIN] == 0.0 or not track.step >= count > 0:
+    if SHAPES[row, REPEAT_MS] == 0.0 or not track.step >= count > 0:
         return
-    if track.times + 1 >= SHAPES[row, TIMES]:
+    if track.times + 1 >= SHAPES[row, MAX_ROUNDS]:
         return
-    sooner = max(1.0 - SHAPES[row, SOONER] * track.times, SOONEST)
-    again = 1e-3 * SHAPES[row, AGAIN] * sooner
+    sooner = max(1.0 - SHAPES[row, SHORTENING] * track.times, MIN_ROUND_FRACTION)
+    again = 1e-3 * SHAPES[row, REPEAT_MS] * sooner
     if now >= track.begins + again:
         track.step, track.begins = 0, track.begins + again
         track.times += 1
@@ -83,10 +83,10 @@ def move_bow(p: Any, c: Any, now: float, length: float) -> None:
         begin_again(g.bow, g.row, count, now)
     while g.bow.step < count:
         step = BOW_STEPS[g.row, g.bow.step]
-        if now < g.bow.begins + time_of(step, g.pace, length):
+        if now < g.bow.begins + time_of(step, g.time_factor, length):
             return
         g.bow.step += 1
-        ramp_ms = g.pace * step[RAMP] + 1e3 * step[RAMP_SHARE] * length
+        ramp_ms = g.time_factor * step[RAMP] + 1e3 * step[RAMP_SHARE] * length
         g.move_ends = now + 1e-3 * ramp_ms
         g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
         g.is_off = 0 if step[IS_ON] != 0.0 else 1
@@ -98,7 +98,7 @@ def move_bow(p: Any, c: Any, now: float, length: float) -> None:
             notes.set_bow_pressure(p, c)
             notes.draw(p, c, ramp_ms)
             g.gain_to = gain_of(g)
-            g.gain_step = (g.gain_to - g.gain_db) / max(ramp_ms / EACH_MS, 1.0)
+            g.gain_step = (g.gain_to - g.gain_db) / max(ramp_ms / HOP_MS, 1.0)
 
 
 @compiled_exactly
@@ -111,7 +111,7 @@ def move_level(p: Any, c: Any) -> None:
     if has_risen(p, c) or not is_there:
         g.gain_db = g.gain_to if is_there else g.gain_db + g.gain_step
     if has_risen(p, c):
-        notes.even_out(p, c)
+        notes.set_loudness_balance(p, c)
 
 
 @compiled_exactly
@@ -122,12 +122,12 @@ def move_finger(p: Any, c: Any, now: float, length: float) -> None:
     begin_again(g.finger, g.row, count, now)
     while g.finger.step < count:
         step = FINGER_STEPS[g.row, g.finger.step]
-        if now < g.finger.begins + time_of(step, g.pace, length):
+        if now < g.finger.begins + time_of(step, g.time_factor, length):
             break
         g.finger.step += 1
         semitones = within_reach(p, step[SEMITONES])
         if step[GLIDE] > 0.0:
-            begin_slide(p, g.bend, semitones, now, 1e-3 * g.pace * step[GLIDE])
+            begin_slide(p, g.bend, semitones, now, 1e-3 * g.time_factor * step[GLIDE])
         else:
             g.bend, g.slide_s = semitones, 0.0
             notes.follow_pitch(p, c, STEP_MS)

@@ -23,30 +23,32 @@ Array = Any
 FLAUTANDO, LIGHT, FIRM, SCRATCHY = 0.2, 0.3, 0.55, 1.0
 # Fractions of Schelleng's limit at which notes begin to scratch, on each string;
 # measured at 0.12 and 0.2 m/s on eight notes: 1 to 2, and 3 to 6.
-EDGES = np.array((1.3, 4.0))
+SCRATCH_FRACTIONS = np.array((1.3, 4.0))
 
 # A bowing is an entry of the table, for one note at one place of the bow: the highest bow speed
 # (m/s) at which it speaks; values of /bow/pressure for FLAUTANDO, LIGHT and FIRM; a factor on the
 # distance of the bow from the bridge; the least finger force (N).
-TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, LEAST_PRESS = range(6)
+TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR, MIN_PRESS = range(6)
 BOWING_SIZE = 6
 DEFAULT_BOWING = (0.6, FLAUTANDO, LIGHT, FIRM, 1.0, 0.0)
 # The notes of the table, as a yehu's strings have them, up to two octaves above the outer one.
 # Beyond them all are bowed as these.
-FIRST, LAST = 64, 96
+FIRST_NOTE, LAST_NOTE = 64, 96
 # The bow positions of the table; beyond them all notes are bowed as at these.
-PLACES = (0.06, 0.08, 0.1, 0.13, 0.165, 0.2, 0.25)
-LOG_PLACES = np.array([log(place) for place in PLACES])
-NOTES = LAST - FIRST + 1
+BOW_POSITIONS = (0.06, 0.08, 0.1, 0.13, 0.165, 0.2, 0.25)
+LOG_POSITIONS = np.array([log(place) for place in BOW_POSITIONS])
+NOTES = LAST_NOTE - FIRST_NOTE + 1
 # On the F string the bow is no nearer to the bridge than here: nearer, the body disturbs it more,
 # and Schelleng's wedge is narrower.
-NEAREST_ON_F = 0.17
+MIN_POSITION_ON_F = 0.17
 
 
 def default_bowing_table() -> Array:
-    """All notes bowed alike: ndarray [shape=(STRINGS, len(PLACES), NOTES, BOWING_SIZE)]."""
-    table = np.tile(np.array(DEFAULT_BOWING), (STRINGS, len(PLACES), NOTES, 1))
-    table[0, :, :, DISTANCE_FACTOR] = np.maximum(NEAREST_ON_F / np.array(PLACES), 1.0)[:, None]
+    """All notes bowed alike: ndarray [shape=(STRINGS, len(BOW_POSITIONS), NOTES, BOWING_SIZE)]."""
+    table = np.tile(np.array(DEFAULT_BOWING), (STRINGS, len(BOW_POSITIONS), NOTES, 1))
+    table[0, :, :, DISTANCE_FACTOR] = np.maximum(MIN_POSITION_ON_F / np.array(BOW_POSITIONS), 1.0)[
+        :, None
+    ]
     return table
 
 
@@ -56,19 +58,19 @@ def bowing_value(table: Array, string: int, place: float, pitch: float, column: 
 
     Parameters
     ----------
-    table : ndarray [shape=(STRINGS, len(PLACES), NOTES, BOWING_SIZE)]
+    table : ndarray [shape=(STRINGS, len(BOW_POSITIONS), NOTES, BOWING_SIZE)]
     string : int
         0 or 1.
     place : float
         The bow position asked for.
     column : int
-        TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR or LEAST_PRESS.
+        TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR or MIN_PRESS.
     """
     at = log(place)
     row = 0
-    while row < len(LOG_PLACES) - 2 and at >= LOG_PLACES[row + 1]:
+    while row < len(LOG_POSITIONS) - 2 and at >= LOG_POSITIONS[row + 1]:
         row += 1
-    part = (at - LOG_PLACES[row]) / (LOG_PLACES[row + 1] - LOG_PLACES[row])
+    part = (at - LOG_POSITIONS[row]) / (LOG_POSITIONS[row + 1] - LOG_POSITIONS[row])
     near = at_pitch(table[string, row], pitch, column)
     far = at_pitch(table[string, row + 1], pitch, column)
     return float(near + min(max(part, 0.0), 1.0) * (far - near))
@@ -76,15 +78,17 @@ def bowing_value(table: Array, string: int, place: float, pitch: float, column: 
 
 @compiled_exactly
 def at_pitch(bowings: Array, pitch: float, column: int) -> float:
-    """The same at one of PLACES; `bowings` has shape (NOTES, BOWING_SIZE)."""
-    pitch = min(max(pitch, FIRST), LAST)
-    row = min(math.floor(pitch), LAST - 1)
-    low, high = bowings[row - FIRST, column], bowings[row + 1 - FIRST, column]
+    """The same at one of BOW_POSITIONS; `bowings` has shape (NOTES, BOWING_SIZE)."""
+    pitch = min(max(pitch, FIRST_NOTE), LAST_NOTE)
+    row = min(math.floor(pitch), LAST_NOTE - 1)
+    low, high = bowings[row - FIRST_NOTE, column], bowings[row + 1 - FIRST_NOTE, column]
     return float(low + (pitch - row) * (high - low))
 
 
 @compiled_exactly
-def share(flautando: float, light: float, firm: float, command: float, string: int) -> float:
+def bow_pressure_for(
+    flautando: float, light: float, firm: float, command: float, string: int
+) -> float:
     """The value of ``/bow/pressure`` for one of ``/playing/pressure``, on a string.
 
     Parameters
@@ -98,4 +102,4 @@ def share(flautando: float, light: float, firm: float, command: float, string: i
         return flautando + (light - flautando) * (command - FLAUTANDO) / (LIGHT - FLAUTANDO)
     if command <= FIRM:
         return light + (firm - light) * (command - LIGHT) / (FIRM - LIGHT)
-    return float(firm + (EDGES[string] - firm) * (command - FIRM) / (SCRATCHY - FIRM))
+    return float(firm + (SCRATCH_FRACTIONS[string] - firm) * (command - FIRM) / (SCRATCHY - FIRM))

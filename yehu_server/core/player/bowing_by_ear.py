@@ -12,19 +12,19 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.bowing import FIRM, FLAUTANDO, SCRATCHY
-from yehu_server.core.player.ear import SURE, learning_bin
+from yehu_server.core.player.ear import PITCH_CERTAINTY, learning_bin
 from yehu_server.core.player.gestures import tremolo_of
 from yehu_server.core.player.parameter_indices import LISTENING, PRESSURE
 from yehu_server.core.player.right_hand import set_bow_pressure
 
-FEW, MANY = 0.6, 1.5  # slips in a period: between them the string speaks
-ROUGH = 0.8  # certainty below which it has no period
-PATIENCE = 12  # hearings of the same fault before the hand acts
-GRACE = 8  # hearings until it judges what it did
-EASY = 16  # hops in Helmholtz motion before the correction is halved
-HEAVIER, LIGHTER = 1.25, 0.8  # steps of the factor on the bow's pressure
-LIGHTEST, HEAVIEST, HEAVIEST_FLAUTANDO = 0.5, 1.8, 1.3
-EVEN = 0.05  # nearer to 1 than this the factor is 1
+FEW_SLIPS, MANY_SLIPS = 0.6, 1.5  # slips in a period: between them the string speaks
+MIN_CERTAINTY = 0.8  # below it the sound has no period
+FAULT_HOPS = 12  # hearings of the same fault before the hand acts
+JUDGE_AFTER_HOPS = 8  # hearings until it judges what it did
+EASE_AFTER_HOPS = 16  # hops in Helmholtz motion before the correction is halved
+HEAVIER_STEP, LIGHTER_STEP = 1.25, 0.8  # steps of the factor on the bow's pressure
+MIN_PRESSURE_FACTOR, MAX_PRESSURE_FACTOR, MAX_FLAUTANDO_FACTOR = 0.5, 1.8, 1.3
+NEUTRAL_WITHIN = 0.05  # nearer to 1 than this the factor is 1
 SPEAKS, TOO_LIGHT, TOO_HEAVY = 0, 1, 2
 
 
@@ -34,8 +34,8 @@ def begin_pressure_correction(p: Any, pitch: float) -> None:
     p.pressure_factor, p.fault, p.faults = 1.0, SPEAKS, 0
     p.spoken, p.eased_from = 0, 0.0
     if may_correct_pressure(p):
-        row, place, pace = learning_bin(p, p.string, pitch)
-        known = p.learnt_pressure_factor[p.string, row, place, pace]
+        row, position_bin, speed_bin = learning_bin(p, p.string, pitch)
+        known = p.learnt_pressure_factor[p.string, row, position_bin, speed_bin]
         p.pressure_factor = min(known, heaviest(p)) if known > 0.0 else 1.0
         p.eased_from = p.pressure_factor if known > 0.0 else 0.0
 
@@ -50,46 +50,50 @@ def may_correct_pressure(p: Any) -> bool:
 @compiled_exactly
 def heaviest(p: Any) -> float:
     """The largest factor on the bow's pressure."""
-    return HEAVIEST_FLAUTANDO if p.value[PRESSURE] <= FLAUTANDO else HEAVIEST
+    return MAX_FLAUTANDO_FACTOR if p.value[PRESSURE] <= FLAUTANDO else MAX_PRESSURE_FACTOR
 
 
 @compiled_exactly
 def fault_of(p: Any) -> int:
-    """What is wrong with what is heard.
+    """Which fault the string has, as it is heard.
 
     Without a period and with many slips the bow may be either; then the command decides.
     """
-    if p.ear.certainty < ROUGH and (p.ear.slips < MANY or p.value[PRESSURE] > FIRM):
+    if p.ear.certainty < MIN_CERTAINTY and (p.ear.slips < MANY_SLIPS or p.value[PRESSURE] > FIRM):
         return TOO_HEAVY
-    return TOO_LIGHT if p.ear.slips >= MANY else SPEAKS
+    return TOO_LIGHT if p.ear.slips >= MANY_SLIPS else SPEAKS
 
 
 @compiled_exactly
 def correct_pressure(p: Any, c: Any, pitch: float) -> None:
-    """Change the pressure factor where the string has not spoken for PATIENCE hops."""
+    """Change the pressure factor where the string has not spoken for FAULT_HOPS hops."""
     if not may_correct_pressure(p):
         return
     fault = fault_of(p)
     if fault == SPEAKS:
         p.faults = min(p.faults, 0)
-        if p.pressure_factor != 1.0 and p.ear.certainty > SURE and p.ear.slips > FEW:
+        if (
+            p.pressure_factor != 1.0
+            and p.ear.certainty > PITCH_CERTAINTY
+            and p.ear.slips > FEW_SLIPS
+        ):
             p.spoken += 1
-            if p.spoken == EASY:
+            if p.spoken == EASE_AFTER_HOPS:
                 ease_or_learn(p, c, pitch)
         return
     p.spoken = 0
     p.faults = p.faults + 1 if fault == p.fault or p.faults < 0 else 1
     p.fault = fault
-    if p.faults < PATIENCE:
+    if p.faults < FAULT_HOPS:
         return
-    p.faults = PATIENCE - GRACE
+    p.faults = FAULT_HOPS - JUDGE_AFTER_HOPS
     was_eased = p.eased_from > 0.0
     if was_eased and p.pressure_factor != p.eased_from:
         p.pressure_factor = p.eased_from  # it needs all of the help
     elif fault == TOO_LIGHT:
-        p.pressure_factor = min(p.pressure_factor * HEAVIER, heaviest(p))
+        p.pressure_factor = min(p.pressure_factor * HEAVIER_STEP, heaviest(p))
     else:
-        p.pressure_factor = max(p.pressure_factor * LIGHTER, LIGHTEST)
+        p.pressure_factor = max(p.pressure_factor * LIGHTER_STEP, MIN_PRESSURE_FACTOR)
     p.eased_from = p.pressure_factor if was_eased else 0.0
     set_bow_pressure(p, c, pitch, True)
 
@@ -105,9 +109,11 @@ def ease_or_learn(p: Any, c: Any, pitch: float) -> None:
     if p.eased_from == 0.0:
         p.eased_from = p.pressure_factor
         p.pressure_factor = math.sqrt(p.pressure_factor)
-        p.pressure_factor = 1.0 if abs(p.pressure_factor - 1.0) < EVEN else p.pressure_factor
+        p.pressure_factor = (
+            1.0 if abs(p.pressure_factor - 1.0) < NEUTRAL_WITHIN else p.pressure_factor
+        )
         p.spoken = 0
         set_bow_pressure(p, c, pitch, True)
         return
-    row, place, pace = learning_bin(p, p.string, pitch)
-    p.learnt_pressure_factor[p.string, row, place, pace] = p.pressure_factor
+    row, position_bin, speed_bin = learning_bin(p, p.string, pitch)
+    p.learnt_pressure_factor[p.string, row, position_bin, speed_bin] = p.pressure_factor

@@ -18,7 +18,7 @@ from yehu_server.compile.jit import compiled_exactly, uncompiled
 from yehu_server.core.physics.elementary import exp2, log2
 from yehu_server.core.player.intonation import ALL, in_tables, place_in
 from yehu_server.core.player.note_tables import ABOVE, GAINS, PLAIN
-from yehu_server.core.player.ownership import USUAL_MS, move
+from yehu_server.core.player.ownership import DEFAULT_RAMP_MS, move_parameter
 from yehu_server.core.player.parameter_indices import (
     BODY_BRILLIANCE,
     BRILLIANCE,
@@ -76,10 +76,10 @@ def set_brilliance(p: Any, c: Any, string: int, pitch: float, effort: float) -> 
         below = above
     gain_db *= p.value[BRILLIANCE]
     p.louder_by = louder_by(p.louder[string], row, part, gain_db)
-    move(p, c, BODY_BRILLIANCE, gain_db, USUAL_MS)
+    move_parameter(p, c, BODY_BRILLIANCE, gain_db, DEFAULT_RAMP_MS)
     frequency = ABOVE * plain
-    ramp_ms = LOWERING_MS if frequency < p.sent[BRILLIANCE_FREQUENCY] else USUAL_MS
-    move(p, c, BRILLIANCE_FREQUENCY, frequency, ramp_ms)
+    ramp_ms = LOWERING_MS if frequency < p.sent[BRILLIANCE_FREQUENCY] else DEFAULT_RAMP_MS
+    move_parameter(p, c, BRILLIANCE_FREQUENCY, frequency, ramp_ms)
 
 
 def usual_shelf(centroids: Any, string: int, pitch: float) -> tuple[float, float]:

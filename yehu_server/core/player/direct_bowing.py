@@ -8,8 +8,13 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player import left_hand
 from yehu_server.core.player.fingering import choose
 from yehu_server.core.player.left_hand import side_of
-from yehu_server.core.player.notes import BEND_RAMP_MS, even_out, follow_bend
-from yehu_server.core.player.ownership import USUAL_MS, ramp_to, take_all_back, write_directly
+from yehu_server.core.player.notes import BEND_RAMP_MS, follow_bend, set_loudness_balance
+from yehu_server.core.player.ownership import (
+    DEFAULT_RAMP_MS,
+    ramp_to,
+    take_all_back,
+    write_directly,
+)
 from yehu_server.core.player.parameter_indices import BOW_FORCE, BOW_SIDE, BOW_SPEED, POSITION
 from yehu_server.core.player.right_hand import requested_speed
 
@@ -28,8 +33,8 @@ def slide(p: Any, c: Any, pitch: float) -> None:
     string, position = choose(p, pitch, False, False, requested_speed(p))
     left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
     if p.is_direct != 0:
-        ramp_to(p, c, BOW_SIDE, side_of(p), USUAL_MS)
-        even_out(p, c)
+        ramp_to(p, c, BOW_SIDE, side_of(p), DEFAULT_RAMP_MS)
+        set_loudness_balance(p, c)
 
 
 @compiled_exactly
@@ -47,14 +52,14 @@ def draw(p: Any, c: Any, speed: float, force: float) -> None:
     write_directly(p, c, BOW_SIDE, side, False)
     p.speed = abs(speed)
     p.effort = force * p.value[POSITION] / c.schelleng[max(p.string, 0)]
-    even_out(p, c)
+    set_loudness_balance(p, c)
 
 
 @compiled_exactly
 def lift(p: Any, c: Any) -> None:
     """Lift a bow drawn directly, and return it to the player."""
     if p.is_direct != 0:
-        ramp_to(p, c, BOW_SPEED, 0.0, USUAL_MS)
-        ramp_to(p, c, BOW_SIDE, 0.0, USUAL_MS)
+        ramp_to(p, c, BOW_SPEED, 0.0, DEFAULT_RAMP_MS)
+        ramp_to(p, c, BOW_SIDE, 0.0, DEFAULT_RAMP_MS)
     take_all_back(p)
     p.is_direct = 0

@@ -16,13 +16,13 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.record import (
     CENTS_DRIFT,
-    DRIFTS,
+    DRIFT_COUNT,
     FORCE_DRIFT,
-    PLACE_DRIFT,
+    POSITION_DRIFT,
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
-from yehu_server.core.physics.elementary import cos, each, exp, pseudorandom
+from yehu_server.core.physics.elementary import cos, elementwise, exp, pseudorandom
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.parameter_indices import (
     BOW_FORCE,
@@ -39,23 +39,23 @@ DRIFT = np.array((0.06, 0.06, 0.04, 4.8, 0.06))
 TREMOR = np.array((0.04, 0.05, 0.02, 2.5, 0.04))
 RIGHT, LEFT = 0, 1
 HAND = np.array((RIGHT, RIGHT, RIGHT, LEFT, LEFT))
-# The drift that the others of each hand go with.
+# The drift with which the others of the same hand correlate.
 LEADING = np.array((SPEED_DRIFT, SPEED_DRIFT, SPEED_DRIFT, CENTS_DRIFT, CENTS_DRIFT))
 CORRELATION = 0.6  # with it
 
-# A vibrato's turns differ: standard deviations of rate and width at full variation, by ear less
-# than violinists' [Seashore]. Half of the variance is slow: its correlation from turn to turn.
-UNEVEN_PACE, UNEVEN_WIDTH = 0.4, 0.4
-TURN_CORRELATION = 0.85
-TURN_NOISE = math.sqrt(3.0 * (1.0 - TURN_CORRELATION * TURN_CORRELATION))
-MOST_UNEVEN = 0.5  # of rate and width, up or down
-FOLLOW = 0.15  # of the way to those of the next turn, in a hop
+# A vibrato's cycles differ: standard deviations of rate and depth at full variation, by ear less
+# than violinists' [Seashore]. Half of the variance is slow: its correlation from cycle to cycle.
+RATE_VARIATION, DEPTH_VARIATION = 0.4, 0.4
+CYCLE_CORRELATION = 0.85
+CYCLE_NOISE = math.sqrt(3.0 * (1.0 - CYCLE_CORRELATION * CYCLE_CORRELATION))
+MAX_VARIATION = 0.5  # of rate and depth, up or down
+SMOOTHING_PER_HOP = 0.15  # of the way to the factors of the next cycle
 
-TIMES_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
-TIMES = 4
-KEPT = each(exp, -HOP_S / TIMES_S)
+TIME_CONSTANTS_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
+STAGES = 4
+POLES = elementwise(exp, -HOP_S / TIME_CONSTANTS_S)
 # Uniform numbers in -1..1 have a variance of 1/3; the sums have one of 1.
-NOISE = np.sqrt(3.0 * (1.0 - KEPT**2) / TIMES)
+NOISE_GAINS = np.sqrt(3.0 * (1.0 - POLES**2) / STAGES)
 TREMOR_HZ, WIDTH_HZ = 10.0, 3.0
 TREMOR_RADIUS = exp(-math.pi * WIDTH_HZ * HOP_S)
 TREMOR_A_1 = 2.0 * TREMOR_RADIUS * cos(2.0 * math.pi * TREMOR_HZ * HOP_S)
@@ -67,24 +67,27 @@ TREMOR_NOISE = math.sqrt(
     / (1.0 + TREMOR_A_2)
 )
 HANDS = 2
-SETTLING, STEADY = 0.8, 1e-6  # a hand that does not play comes to rest, by so much in a hop
-LATE = 2  # hops after which what a finger did is heard
-DRAWN_FROM = 1 << 31  # of the seed's numbers; those before are the notes' (``phrasing``)
+DECAY_PER_HOP, NEGLIGIBLE = (
+    0.8,
+    1e-6,
+)  # how a hand that does not play comes to rest
+DETECTION_DELAY_HOPS = 2  # of what a finger does, by the ear
+SEQUENCE_OFFSET = 1 << 31  # of the seed's numbers; those before are the notes' (``phrasing``)
 
 DRIFT_STATE = np.dtype(
     [
-        ("slow", np.float64, (DRIFTS, TIMES)),  # the sequences of each drift
+        ("slow", np.float64, (DRIFT_COUNT, STAGES)),  # the sequences of each drift
         ("tremor", np.float64, (HANDS, 2)),  # of each hand, now and one hop ago
-        ("cents", np.float64, LATE + 1),  # of the finger, now and at the last hops
+        ("cents", np.float64, DETECTION_DELAY_HOPS + 1),  # of the finger, now and at the last hops
         ("phase", np.float64),  # of the vibrato, one hop ago (turns)
         (
             "slow_deviate",
             np.float64,
             2,
         ),  # of the vibrato's rate and width, which changes from turn to turn
-        ("pace", np.float64),  # deviates of this turn of the vibrato
-        ("width", np.float64),
-        ("drawn", np.int64),  # random numbers so far
+        ("rate_deviate", np.float64),  # of this cycle of the vibrato
+        ("depth_deviate", np.float64),
+        ("random_count", np.int64),  # random numbers so far
     ],
     align=True,
 )
@@ -93,76 +96,83 @@ DRIFT_STATE = np.dtype(
 @compiled_exactly
 def next_random(p: Any) -> float:
     """The next random number, -1 to 1."""
-    p.drift_state.drawn += 1
-    return pseudorandom((p.seed << 32) + DRAWN_FROM + p.drift_state.drawn)
+    p.drift_state.random_count += 1
+    return pseudorandom((p.seed << 32) + SEQUENCE_OFFSET + p.drift_state.random_count)
 
 
 @compiled_exactly
 def advance_drift(p: Any, c: Any) -> None:
-    """Let the hands drift and tremble on to where they are one hop later."""
+    """Advance drift and tremor of the hands by one hop."""
     u, amount = p.drift_state, p.value[VARIATION]
     for hand in range(HANDS):
         now, before = u.tremor[hand, 0], u.tremor[hand, 1]
         u.tremor[hand, 0] = TREMOR_A_1 * now - TREMOR_A_2 * before + TREMOR_NOISE * next_random(p)
         u.tremor[hand, 1] = now
-    for i in range(DRIFTS):
-        for k in range(TIMES):
-            u.slow[i, k] = KEPT[k] * u.slow[i, k] + NOISE[k] * next_random(p)
+    for i in range(DRIFT_COUNT):
+        for k in range(STAGES):
+            u.slow[i, k] = POLES[k] * u.slow[i, k] + NOISE_GAINS[k] * next_random(p)
     c.drifting = 0
-    for i in range(DRIFTS):
-        drift = total(u.slow[i])
+    for i in range(DRIFT_COUNT):
+        drift = sum_of(u.slow[i])
         if i != LEADING[i]:
             drift = (
-                CORRELATION * total(u.slow[LEADING[i]]) + math.sqrt(1.0 - CORRELATION**2) * drift
+                CORRELATION * sum_of(u.slow[LEADING[i]]) + math.sqrt(1.0 - CORRELATION**2) * drift
             )
         wanted = amount * (DRIFT[i] * drift + TREMOR[i] * u.tremor[HAND[i], 0])
         if amount == 0.0 or not is_playing(p, i):
-            wanted = SETTLING * c.drift[i] if abs(c.drift[i]) > STEADY else 0.0
+            wanted = DECAY_PER_HOP * c.drift[i] if abs(c.drift[i]) > NEGLIGIBLE else 0.0
         c.drift_slope[i] = (wanted - c.drift[i]) / p.ear.hop
-        if wanted == 0.0 and abs(c.drift[i]) <= STEADY:
+        if wanted == 0.0 and abs(c.drift[i]) <= NEGLIGIBLE:
             c.drift[i] = c.drift_slope[i] = 0.0
         c.drifting |= 1 if c.drift[i] != 0.0 or c.drift_slope[i] != 0.0 else 0
     if c.drifting == 0:
-        c.sounding_drift = c.place_drift = 1.0
-    for k in range(LATE, 0, -1):
+        c.sounding_drift = c.position_drift = 1.0
+    for k in range(DETECTION_DELAY_HOPS, 0, -1):
         u.cents[k] = u.cents[k - 1]
     u.cents[0] = c.drift[CENTS_DRIFT]
 
 
 @compiled_exactly
 def vary_vibrato(p: Any, c: Any) -> None:
-    """Let the vibrato's rate and width follow the deviates of its turn."""
+    """Let the vibrato's rate and depth follow the deviates of its cycle."""
     u, amount = p.drift_state, p.value[VARIATION] if p.sounding >= 0 else 0.0
     if c.vibrato < u.phase:
-        u.pace, u.width = next_turn_deviate(p, 0), next_turn_deviate(p, 1)
+        u.rate_deviate, u.depth_deviate = next_cycle_deviate(p, 0), next_cycle_deviate(p, 1)
     u.phase = c.vibrato
-    c.vibrato_pace += FOLLOW * (turn_factor(amount * UNEVEN_PACE * u.pace) - c.vibrato_pace)
-    c.vibrato_width += FOLLOW * (turn_factor(amount * UNEVEN_WIDTH * u.width) - c.vibrato_width)
-    if amount == 0.0 and max(abs(c.vibrato_pace - 1.0), abs(c.vibrato_width - 1.0)) < STEADY:
-        c.vibrato_pace = c.vibrato_width = 1.0
+    c.vibrato_rate_factor += SMOOTHING_PER_HOP * (
+        cycle_factor(amount * RATE_VARIATION * u.rate_deviate) - c.vibrato_rate_factor
+    )
+    c.vibrato_depth_factor += SMOOTHING_PER_HOP * (
+        cycle_factor(amount * DEPTH_VARIATION * u.depth_deviate) - c.vibrato_depth_factor
+    )
+    if (
+        amount == 0.0
+        and max(abs(c.vibrato_rate_factor - 1.0), abs(c.vibrato_depth_factor - 1.0)) < NEGLIGIBLE
+    ):
+        c.vibrato_rate_factor = c.vibrato_depth_factor = 1.0
 
 
 @compiled_exactly
-def next_turn_deviate(p: Any, which: int) -> float:
-    """The deviate of the vibrato's next turn, of variance 1: of its rate (0) or its width (1)."""
+def next_cycle_deviate(p: Any, which: int) -> float:
+    """A deviate of the vibrato's next cycle, of variance 1: of its rate (0) or its depth (1)."""
     slow_deviate = p.drift_state.slow_deviate
-    slow_deviate[which] = TURN_CORRELATION * slow_deviate[which] + TURN_NOISE * next_random(p)
+    slow_deviate[which] = CYCLE_CORRELATION * slow_deviate[which] + CYCLE_NOISE * next_random(p)
     return float(math.sqrt(0.5) * (slow_deviate[which] + math.sqrt(3.0) * next_random(p)))
 
 
 @compiled_exactly
-def turn_factor(by: float) -> float:
-    """The factor of a turn that differs by so much, within what a hand does."""
-    return 1.0 + min(max(by, -MOST_UNEVEN), MOST_UNEVEN)
+def cycle_factor(deviation: float) -> float:
+    """The factor of a cycle, from its deviation, which is limited to what a hand does."""
+    return 1.0 + min(max(deviation, -MAX_VARIATION), MAX_VARIATION)
 
 
 @compiled_exactly
-def total(numbers: Any) -> float:
-    """Their sum."""
-    found = 0.0
+def sum_of(numbers: Any) -> float:
+    """The sum of numbers, in their order."""
+    total = 0.0
     for number in numbers:
-        found += number
-    return found
+        total += number
+    return total
 
 
 @compiled_exactly
@@ -173,7 +183,7 @@ def is_playing(p: Any, drift: int) -> bool:
     index = BOW_SPEED
     if drift == FORCE_DRIFT:
         index = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.is_held[BOW_FORCE] == 0 else BOW_FORCE
-    elif drift == PLACE_DRIFT:
+    elif drift == POSITION_DRIFT:
         index = BOW_POSITION
     elif drift == CENTS_DRIFT:
         index = FINGER_POSITION[p.finger]
@@ -185,4 +195,4 @@ def is_playing(p: Any, drift: int) -> bool:
 @compiled_exactly
 def heard_semitones(p: Any) -> float:
     """The finger's drift in what is heard now."""
-    return float(p.drift_state.cents[LATE] / 100.0)
+    return float(p.drift_state.cents[DETECTION_DELAY_HOPS] / 100.0)

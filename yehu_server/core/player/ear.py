@@ -24,20 +24,22 @@ from yehu_server.core.player.parameter_indices import LISTENING, POSITION, SPEED
 def learning_bin(p: Any, string: int, pitch: float) -> tuple[int, int, int]:
     """Where what is learnt of a pitch is kept: numbers of pitch, bow position and bow speed."""
     row = int(np.rint(2.0 * (pitch - p.open_note[string]))) + 2  # a bent one may be below the open
-    place = int(np.rint(4.0 * log2(p.value[POSITION] / 0.05)))
-    pace = int(np.rint(2.0 * log2(p.value[SPEED] / 0.03)))
+    position_bin = int(np.rint(4.0 * log2(p.value[POSITION] / 0.05)))
+    speed_bin = int(np.rint(2.0 * log2(p.value[SPEED] / 0.03)))
     return (
         min(max(row, 0), p.learnt.shape[1] - 1),
-        min(max(place, 0), p.learnt.shape[2] - 1),
-        min(max(pace, 0), p.learnt.shape[3] - 1),
+        min(max(position_bin, 0), p.learnt.shape[2] - 1),
+        min(max(speed_bin, 0), p.learnt.shape[3] - 1),
     )
 
 
 @compiled_exactly
 def learnt_cents(p: Any, string: int, pitch: float) -> float:
     """What was learnt of a pitch on a string (cents of sharpening)."""
-    row, place, pace = learning_bin(p, string, pitch)
-    return float(p.learnt[string, row, place, pace]) if p.value[LISTENING] > 0.0 else 0.0
+    row, position_bin, speed_bin = learning_bin(p, string, pitch)
+    return (
+        float(p.learnt[string, row, position_bin, speed_bin]) if p.value[LISTENING] > 0.0 else 0.0
+    )
 
 
 Array = Any
@@ -45,11 +47,14 @@ Array = Any
 EAR_SAMPLES = 1 << 12  # samples that the ear remembers; a power of two
 SPAN_S = 300 / 44100  # of the sound that is compared, and about its distance in time
 HOP_S = 0.005  # from one hearing to the next
-BEHIND = CHUNK  # frames that a hearing lags behind: by then they are computed
-SEARCHED = 0.06  # a period is searched so far from the expected one, as a part of it
-SURE = 0.9  # certainty from which the pitch is known
-NEAR = 3  # samples about the last lag
-SLIPPING, STICKING = 0.4, 0.2  # parts of the largest velocity: a slip begins, and ends
+DELAY_FRAMES = CHUNK  # frames that a hearing lags behind: by then they are computed
+SEARCH_FRACTION = 0.06  # a period is searched so far from the expected one, as a part of it
+PITCH_CERTAINTY = 0.9  # certainty from which the pitch is known
+SEARCH_LAGS = 3  # samples about the last lag
+SLIP_BEGIN_FRACTION, SLIP_END_FRACTION = (
+    0.4,
+    0.2,
+)  # of the largest velocity
 
 EAR = np.dtype(
     [
@@ -74,7 +79,7 @@ def prepare_ear(ear: Any, rate: float) -> None:
 def reset_ear(ear: Any, frame: int) -> None:
     """Let the next hearing be the first due from a frame on; nothing is certain yet."""
     hop = int(ear["hop"])
-    ear["next"] = BEHIND + hop * max(1, -((BEHIND - frame) // hop))
+    ear["next"] = DELAY_FRAMES + hop * max(1, -((DELAY_FRAMES - frame) // hop))
     ear["certainty"] = 0.0
 
 
@@ -112,12 +117,12 @@ def count_slips(heard: Array, end: int, span: int) -> int:
     largest, first = 0.0, np.uint64(end - span)
     for i in range(np.uint64(span)):
         largest = max(largest, abs(heard[first + i]))
-    slips, is_slipping = 0, abs(heard[first]) > STICKING * largest
+    slips, is_slipping = 0, abs(heard[first]) > SLIP_END_FRACTION * largest
     for i in range(np.uint64(span)):
         size = abs(heard[first + i])
         if is_slipping:
-            is_slipping = size > STICKING * largest
-        elif size > SLIPPING * largest:
+            is_slipping = size > SLIP_END_FRACTION * largest
+        elif size > SLIP_BEGIN_FRACTION * largest:
             is_slipping = True
             slips += 1
     return slips
@@ -138,19 +143,22 @@ def best_lag(heard: Array, end: int, span: int, lowest: int, highest: int) -> in
 def hear(ear: Any, heard: Array, frame: int, period: float) -> None:
     """Hear a string whose period is expected (samples), at the `frame` of a hearing.
 
-    If the last estimate was certain, only NEAR samples about its lag are searched; otherwise
-    all lags within SEARCHED of the expected one.
+    If the last estimate was certain, only SEARCH_LAGS samples about its lag are searched; otherwise
+    all lags within SEARCH_FRACTION of the expected one.
     """
-    end = EAR_SAMPLES + ((frame - BEHIND) & (EAR_SAMPLES - 1))
+    end = EAR_SAMPLES + ((frame - DELAY_FRAMES) & (EAR_SAMPLES - 1))
     span = ear.span
     # An odd number, so that a string whose periods differ in turn is heard to have no such period.
     periods = 2.0 * max(0.0, np.rint(0.5 * (span / period - 1.0))) + 1.0
     expected = periods * period
-    lowest, highest = int(expected * (1.0 - SEARCHED)), int(expected * (1.0 + SEARCHED)) + 1
+    lowest, highest = (
+        int(expected * (1.0 - SEARCH_FRACTION)),
+        int(expected * (1.0 + SEARCH_FRACTION)) + 1,
+    )
     first, last = lowest, highest
-    if ear.certainty > SURE:
+    if ear.certainty > PITCH_CERTAINTY:
         near = int(np.rint(expected * exp2(-ear.error / 1200.0)))
-        first, last = max(lowest, near - NEAR), min(highest, near + NEAR)
+        first, last = max(lowest, near - SEARCH_LAGS), min(highest, near + SEARCH_LAGS)
     lag = best_lag(heard, end, span, first, last)
     ear.certainty = 0.0
     if first < lag < last:

@@ -43,21 +43,21 @@ SHAPED = Articulation(
     ),
     length_s=1.2,
 )  # fmt: skip
-SHAPED_AT, LEAST_SHAPED_S = 0.5, 0.35
-# Of the attack of a shaped note: its factor for a short note and for a long one (s). By ear; in
+SHAPED_AT, MIN_SHAPED_S = 0.5, 0.35
+# The attack of a shaped note: its factor for a short note and for a long one (s). By ear; in
 # recordings of an erhu and a violin a tenth of the notes rise within 30 ms and half in 120 to 250.
 SHORT_ATTACK, LONG_ATTACK, LONG_S, UNEVEN_ATTACK = 0.8, 3.4, 1.2, 0.3
-LOWEST_STOPPED = 65.6  # MIDI note: a finger there is over 8 mm from the loop
-FITS = 0.7  # of a note, for steps that have times of their own
+MIN_STOPPED_PITCH = 65.6  # MIDI note: a finger there is over 8 mm from the loop
+STEPS_FRACTION = 0.7  # of a note, for steps that have times of their own
 # The level is this power of the bow's factor, on top of what a faster bow gives, as with dynamics.
-LEVEL_EXPONENT, LEAST_FACTOR = 0.6, 0.1
+LEVEL_EXPONENT, MIN_FACTOR = 0.6, 0.1
 
 _ROWS: tuple[Articulation, ...] = (*ARTICULATIONS, SHAPED)
 SHAPED_ROW = len(ARTICULATIONS)
 
 AT, AT_SHARE, RAMP, RAMP_SHARE, SPEED, WEIGHT, IS_ON, TURNS = range(8)  # of a bow's step
 SEMITONES, GLIDE = 2, 3  # of a finger's, after AT and AT_SHARE
-ATTACK, LENGTH, AGAIN, SOONER, TIMES, STROKES, DEPTH, IS_PLUCKED = range(8)
+ATTACK, LENGTH, REPEAT_MS, SHORTENING, MAX_ROUNDS, STROKES, DEPTH, IS_PLUCKED = range(8)
 PLUCKED_AT, PLUCKED_BY = 8, 9  # of the same rows
 CENTS, HERTZ, PRESS, UPWARD, DELAY_MS = range(5)  # of a vibrato
 
@@ -134,7 +134,7 @@ GESTURE = np.dtype(
         ("bow", TRACK),
         ("speed", np.float64),  # factors
         ("weight", np.float64),
-        ("pace", np.float64),  # of the steps, below 1 in a note that is too short for them
+        ("time_factor", np.float64),  # of the steps, below 1 in a note that is too short for them
         ("gain_db", np.float64),  # of the level, that follows the bow's speed
         ("gain_to", np.float64),  # where it goes (dB)
         ("gain_step", np.float64),  # by so much in each 5 ms
@@ -154,7 +154,7 @@ GESTURE = np.dtype(
 
 
 RESTING = np.zeros(1, GESTURE)[0]  # as `rest` leaves it
-for _field in ("scale", "attack", "speed", "weight", "pace"):
+for _field in ("scale", "attack", "speed", "weight", "time_factor"):
     RESTING[_field] = 1.0
 RESTING["node"] = NONE
 
@@ -165,7 +165,7 @@ def rest(g: Any) -> None:
     g.row, g.scale, g.attack = ORDINARY, 1.0, 1.0
     g.bow.step = g.bow.times = g.finger.step = g.finger.times = 0
     g.bow.begins = g.finger.begins = 0.0
-    g.speed = g.weight = g.pace = 1.0
+    g.speed = g.weight = g.time_factor = 1.0
     g.gain_db = g.gain_to = g.gain_step = 0.0
     g.move_ends, g.is_off, g.bend, g.slide_s, g.node = 0.0, 0, 0.0, 0.0, NONE
 
@@ -180,7 +180,7 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
     if g.row == ORDINARY and p.value[PHRASING] > 0.0:
         shape(p, c)
     g.attack *= SHAPES[g.row, ATTACK]
-    g.pace = pace_of(p, g.row)
+    g.time_factor = time_factor_of(p, g.row)
     if TOUCHES[g.row]:
         touch(p)
     if is_slur and SHAPES[g.row, STROKES] == 0.0:
@@ -213,7 +213,7 @@ def touch(p: Any) -> None:
 @compiled_exactly
 def within_reach(p: Any, semitones: float) -> float:
     """Where a finger can be, from the note's pitch: not lower than the lowest that one stops."""
-    lowest = LOWEST_STOPPED - p.held_pitch[p.sounding]
+    lowest = MIN_STOPPED_PITCH - p.held_pitch[p.sounding]
     return float(max(semitones, min(lowest, 0.0)))
 
 
@@ -230,7 +230,7 @@ def shape(p: Any, c: Any) -> None:
     longer = min(length / LONG_S, 1.0) if c.value[BOW_SPEED] == 0.0 else 0.0
     factor = (SHORT_ATTACK + (LONG_ATTACK - SHORT_ATTACK) * longer) * max(uneven, 0.4)
     g.attack = max(1.0 + amount * (factor - 1.0), 0.4)
-    if length >= LEAST_SHAPED_S:
+    if length >= MIN_SHAPED_S:
         g.row, g.scale = SHAPED_ROW, amount * max(1.0 + 0.4 * deviate(p), 0.0)
 
 
@@ -242,28 +242,28 @@ def note_length(p: Any, row: int) -> float:
 
 
 @compiled_exactly
-def pace_of(p: Any, row: int) -> float:
+def time_factor_of(p: Any, row: int) -> float:
     """Factor on the times of a gesture's steps, so that they fit into a note of a known length.
 
-    What comes again and again keeps its pace.
+    A gesture that repeats keeps its times.
     """
     length_ms = 1e3 * p.value[NOTE_LENGTH]
-    pace = 1.0
-    if length_ms == 0.0 or SHAPES[row, AGAIN] > 0.0:
-        return pace
+    factor = 1.0
+    if length_ms == 0.0 or SHAPES[row, REPEAT_MS] > 0.0:
+        return factor
     for i in range(BOW_COUNT[row]):
         step = BOW_STEPS[row, i]
-        pace = min(pace, fitting(step[AT] + step[RAMP], step[AT_SHARE], length_ms))
+        factor = min(factor, fitting(step[AT] + step[RAMP], step[AT_SHARE], length_ms))
     for i in range(FINGER_COUNT[row]):
         step = FINGER_STEPS[row, i]
-        pace = min(pace, fitting(step[AT] + step[GLIDE], step[AT_SHARE], length_ms))
-    return pace
+        factor = min(factor, fitting(step[AT] + step[GLIDE], step[AT_SHARE], length_ms))
+    return factor
 
 
 @compiled_exactly
 def fitting(needed_ms: float, at_share: float, length_ms: float) -> float:
     """Factor by which a time fits into what of a note is left after a share of it."""
-    left_ms = FITS * (1.0 - at_share) * length_ms
+    left_ms = STEPS_FRACTION * (1.0 - at_share) * length_ms
     return float(left_ms / needed_ms if needed_ms > left_ms else 1.0)
 
 
@@ -271,7 +271,7 @@ def fitting(needed_ms: float, at_share: float, length_ms: float) -> float:
 def gain_of(g: Any) -> float:
     """Gain of the level (dB) at the bow's factor on its speed, beyond what the speed gives."""
     own = GAINS_DB[string_of(g.node)] if g.node != NONE else 0.0
-    if g.is_off != 0 or g.speed <= LEAST_FACTOR:
+    if g.is_off != 0 or g.speed <= MIN_FACTOR:
         return float(own)
     return float(own + 20.0 * LEVEL_EXPONENT * log10(g.speed))
 
@@ -290,7 +290,7 @@ def scaled(g: Any, factor: float) -> float:
 
 @compiled_exactly
 def attack_ms(p: Any) -> float:
-    """The time in which a lifted bow comes to its speed and force."""
+    """The time in which a lifted bow reaches its speed and force."""
     usual = p.value[ATTACK_MS] * struck_attack(p) * p.gesture.attack
     return float(usual + p.hurry * min(HURRIED_ATTACK_MS - usual, 0.0))
 

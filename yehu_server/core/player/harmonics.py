@@ -21,15 +21,15 @@ NODES = np.array(SPEAKING)
 STRING_OF, TOUCHED, PARTS = range(3)
 NONE = -1
 SAME_PITCH = 0.3  # semitones
-SOUNDING = 0.2986 / 0.3  # of the string up to the bridge, what swings
+SOUNDING_FRACTION = 0.2986 / 0.3  # of the string up to the bridge, what swings
 TOUCH_N = 0.02
-PLACE = 0.05  # of the bow: elsewhere F5 is 40 cents flat
+HARMONIC_BOW_POSITION = 0.05  # of the bow: elsewhere F5 is 40 cents flat
 # Those of the outer string are some 14 dB softer than the open string.
 GAINS_DB = np.array((0.0, 10.0))
 
 
 def sounding_above(parts: float) -> float:
-    """The interval (semitones) from an open string to its harmonic of so many parts."""
+    """The interval (semitones) from an open string to the harmonic of a number of parts."""
     return float(round(12.0 * log2(parts)))
 
 
@@ -54,4 +54,4 @@ def node_of(p: Any, pitch: float) -> int:
 @compiled_exactly
 def place_of(p: Any, node: int) -> float:
     """Where the finger touches (m)."""
-    return float(SOUNDING * p.bridge_x / NODES[node, PARTS])
+    return float(SOUNDING_FRACTION * p.bridge_x / NODES[node, PARTS])

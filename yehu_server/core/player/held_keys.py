@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.player.record import ENDING, MOST_HELD
+from yehu_server.core.player.record import ENDING, MAX_HELD
 
 NOT_HELD = -1
 
@@ -25,7 +25,7 @@ def find_key(p: Any, channel: int, key: float) -> int:
 @compiled_exactly
 def add_key(p: Any, channel: int, key: float, pitch: float) -> None:
     """Hold a key, as the last one; the key held longest makes room."""
-    if p.held == MOST_HELD:
+    if p.held == MAX_HELD:
         remove_key(p, 0)
     last = p.held
     p.held_channel[last], p.held_key[last], p.held_pitch[last] = channel, key, pitch

@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.harmonics import NONE, TOUCH_N
-from yehu_server.core.player.ownership import move, take_back
+from yehu_server.core.player.ownership import move_parameter, take_back
 from yehu_server.core.player.parameter_indices import (
     FINGER_COUNT,
     FINGER_POSITION,
@@ -25,7 +25,7 @@ from yehu_server.core.player.phrasing import STEP_MS, varied_landing
 # (scripts/playability.py legato tries more).
 LANDING_MS, LIFTING_MS = 3.0, 5.0
 # A position nearer than this is reached by a slide, as no second finger fits beside the first.
-NEAREST_STEP = 2e-3  # m
+MIN_STEP = 2e-3  # m
 SETTLING_MS = 8.0
 # A finger that lands while the bow changes strings: it stops both, and would strike the one left.
 CROSSING_LANDING_MS = 10.0
@@ -64,17 +64,17 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
             land(p, c, position)
         press(p, c, least_press, landing_ms)
         return
-    if slide_ms < 0.0 and abs(position - before) < NEAREST_STEP:
+    if slide_ms < 0.0 and abs(position - before) < MIN_STEP:
         slide_ms = SETTLING_MS
     if slide_ms >= 0.0:
-        move(p, c, FINGER_POSITION[p.finger], position, slide_ms)
+        move_parameter(p, c, FINGER_POSITION[p.finger], position, slide_ms)
         press(p, c, least_press, landing_ms)
         return
     land(p, c, position)
     press(p, c, least_press, landing_ms)
     for finger in range(FINGER_COUNT):  # all, since a direct write may have put others down
         if finger != p.finger:
-            move(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
+            move_parameter(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
 
 
 @compiled_exactly
@@ -86,7 +86,9 @@ def press(p: Any, c: Any, least_press: float, landing_ms: float) -> None:
     if force != p.pressing or force > 0.0:
         if p.pressing == 0.0:
             landing_ms = varied_landing(p, landing_ms)
-        move(p, c, FINGER_PRESS[p.finger], force, landing_ms if force > 0.0 else LIFTING_MS)
+        move_parameter(
+            p, c, FINGER_PRESS[p.finger], force, landing_ms if force > 0.0 else LIFTING_MS
+        )
     p.pressing = force
 
 
@@ -96,7 +98,7 @@ def lift_all(p: Any, c: Any) -> None:
     p.string, p.position, p.pressing = -1, OPEN, 0.0
     for finger in range(FINGER_COUNT):
         take_back(p, FINGER_PRESS[finger])
-        move(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
+        move_parameter(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
 
 
 @compiled_exactly
@@ -104,4 +106,4 @@ def land(p: Any, c: Any, position: float) -> None:
     """Put the next finger over a position (m)."""
     p.finger = (p.finger + 1) % FINGER_COUNT
     p.pressing = 0.0
-    move(p, c, FINGER_POSITION[p.finger], position, 0.0)
+    move_parameter(p, c, FINGER_POSITION[p.finger], position, 0.0)

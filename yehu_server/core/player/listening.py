@@ -8,14 +8,14 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
-from yehu_server.core.controls.hands import vibrato_at
+from yehu_server.core.controls.kernel_controls import vibrato_at
 from yehu_server.core.controls.record import Controls
 from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
-from yehu_server.core.player.ear import BEHIND, EAR_SAMPLES, hear
+from yehu_server.core.player.ear import DELAY_FRAMES, EAR_SAMPLES, hear
 from yehu_server.core.player.notes import is_touched, reverse_bow_at_end, sounding_pitch
 from yehu_server.core.player.parameter_indices import LISTENING
 from yehu_server.core.player.record import Player
@@ -52,9 +52,9 @@ def vibrato_semitones(p: Any, c: Any) -> float:
     """The vibrato in the middle of what is heard now."""
     if c.value[DEPTH] == 0.0:
         return 0.0
-    ago = (BEHIND + p.ear.span) / p.rate
-    phase = c.vibrato - c.vibrato_pace * c.value[RATE] * ago
-    return float(vibrato_at(c, phase) * c.vibrato_width * c.value[DEPTH] / 100.0)
+    ago = (DELAY_FRAMES + p.ear.span) / p.rate
+    phase = c.vibrato - c.vibrato_rate_factor * c.value[RATE] * ago
+    return float(vibrato_at(c, phase) * c.vibrato_depth_factor * c.value[DEPTH] / 100.0)
 
 
 @native

@@ -9,10 +9,10 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.ramps import take
+from yehu_server.core.controls.ramps import start_ramp
 from yehu_server.core.controls.slots import SILENCE, SPEED
 from yehu_server.core.player import left_hand, right_hand, velocity, vibrato
-from yehu_server.core.player.bowing import LEAST_PRESS, bowing_value
+from yehu_server.core.player.bowing import MIN_PRESS, bowing_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import choose, choose_for_slide, stay
 from yehu_server.core.player.gestures import (
@@ -31,8 +31,8 @@ from yehu_server.core.player.held_keys import NOT_HELD, add_key, find_key, remov
 from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.left_hand import LIFTING_MS, side_of
 from yehu_server.core.player.ownership import (
-    USUAL_MS,
-    move,
+    DEFAULT_RAMP_MS,
+    move_parameter,
     take_all_back,
     take_back,
 )
@@ -75,8 +75,9 @@ BEND_RAMP_MS = find("/playing/bend").smooth_ms
 # The level is this power of dynamics: together with the slower bow, dynamics 0.5 is some 12 dB
 # below 1, and 0.1 some 35 dB. By ear.
 DYNAMICS_EXPONENT = 1.5
-FARTHEST_KEY = 0.5  # semitones, of a pitch from a key: what bends farther slides by itself
-SETTLING_MS = 35.0  # in which a string comes to its pitch, and what is heard is all of it
+# A pitch bent farther than this from its key is not given a slide of its own.
+MAX_SEMITONES_FROM_KEY = 0.5
+SETTLING_MS = 35.0  # until a string has reached its pitch, and the ear has only that in its window
 
 
 # -- notes --------------------------------------------------------------------------------------
@@ -136,7 +137,7 @@ def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
     right_hand.lift(p, c, LIFTING_MS)
     left_hand.lift_all(p, c)
     p.finger_pitch = p.open_note[0]
-    take(c, SILENCE, 0.0, 0)
+    start_ramp(c, SILENCE, 0.0, 0)
 
 
 @compiled_exactly
@@ -147,7 +148,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     is_slur = is_legato and not at_once
     if not at_once:
         p.hurry = 0.0 if is_legato else hurry_of(p, c)
-    p.pace = 1.0
+    p.stroke_speed_factor = 1.0
     begin_gesture(p, c, is_slur)
     turns = plan_stroke(p, c, requested_speed(p), is_legato)
     slide_ms = 0.0 if at_once and not is_touched(p) else slide_into_note_ms(p, c)
@@ -170,7 +171,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
             shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p)
             string, position = choose(p, pitch, beats, shakes, requested_speed(p))
     crosses_strings = string != p.string
-    left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
+    left_hand.stop(p, c, string, position, min_press(p, string), slide_ms)
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)
     pause_listening(p, c, max(slide_ms, SLURRED_MS if is_slur else attack_ms(p)))
@@ -180,7 +181,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     set_level(p, c)
     set_bow_pressure(p, c)
     if not is_legato or crosses_strings:
-        right_hand.bite(p, c)
+        right_hand.set_attack_pressure(p, c)
     if is_plucked(p):
         right_hand.pluck(p, c, side_of(p))
     else:
@@ -195,7 +196,7 @@ def slide_into_note_ms(p: Any, c: Any) -> float:
         return STEP_MS
     if is_on(p, PORTAMENTO):
         return float(p.value[PORTAMENTO_TIME])
-    is_bent = abs(p.value[BEND]) > FARTHEST_KEY
+    is_bent = abs(p.value[BEND]) > MAX_SEMITONES_FROM_KEY
     if is_bent or is_plucked(p) or not BEARS_SLIDE[p.gesture.row]:
         return STEP_MS
     return slide_of_leap_ms(p, c, note_pitch(p) - p.finger_pitch)
@@ -216,7 +217,7 @@ def begin_from_last(p: Any, slide_ms: float) -> tuple[int, float]:
 
 @compiled_exactly
 def reverse_bow_at_end(p: Any, c: Any) -> None:
-    """Turn a bow that comes to its end."""
+    """Change the direction of a bow that reaches its end."""
     if p.sounding < 0 or tremolo_of(p) != 0.0:
         return
     if is_at_its_end(p, c, abs(c.value[SPEED])):
@@ -272,7 +273,7 @@ def is_touched(p: Any) -> bool:
 @compiled_exactly
 def set_assist(p: Any, c: Any) -> None:
     """Let the bow's force follow its speed as far as is asked for."""
-    move(p, c, BOW_ASSIST, p.value[ASSIST], USUAL_MS)
+    move_parameter(p, c, BOW_ASSIST, p.value[ASSIST], DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -280,7 +281,7 @@ def set_level(p: Any, c: Any) -> None:
     """Set the output's level."""
     level = (p.value[VOLUME] * p.value[EXPRESSION]) ** 2
     level *= p.value[DYNAMICS] * math.sqrt(p.value[DYNAMICS])  # to the DYNAMICS_EXPONENT
-    move(p, c, OUTPUT_LEVEL, level, USUAL_MS)
+    move_parameter(p, c, OUTPUT_LEVEL, level, DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -291,7 +292,7 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 
 
 @compiled_exactly
-def draw_on(p: Any, c: Any) -> None:
+def update_bow(p: Any, c: Any) -> None:
     """Draw as parameters now say, but let a move of the gesture take its time."""
     left_ms = 1e3 * (p.gesture.move_ends - (c.frame - p.note_began) / p.rate)
     draw(p, c, max(left_ms, SMOOTH_MS[BOW_SPEED]))
@@ -301,27 +302,27 @@ def draw_on(p: Any, c: Any) -> None:
 def set_bow_pressure(p: Any, c: Any) -> None:
     """Set the bow's pressure and position, and the colour that they make."""
     right_hand.set_bow_pressure(p, c, note_pitch(p), p.sounding >= 0)
-    even_out(p, c)
+    set_loudness_balance(p, c)
 
 
 @compiled_exactly
-def least_press(p: Any, string: int) -> float:
+def min_press(p: Any, string: int) -> float:
     """The finger force (N) that the sounding note needs on a string."""
     if p.sounding < 0:
         return 0.0
     stopped = in_tables(p, string, note_pitch(p))
-    return bowing_value(p.bowing_table, string, p.value[POSITION], stopped, LEAST_PRESS)
+    return bowing_value(p.bowing_table, string, p.value[POSITION], stopped, MIN_PRESS)
 
 
 @compiled_exactly
-def even_out(p: Any, c: Any) -> None:
+def set_loudness_balance(p: Any, c: Any) -> None:
     """Set colour, and the gain that evens out the loudness of notes, as the bow is drawn."""
     if p.sounding >= 0 or p.is_direct != 0:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
         speed, effort = requested_speed(p), requested_speed(p) * p.value[PRESSURE]
         if p.is_direct != 0:
             speed, effort = p.speed, p.effort
-        velocity.even_out(p, c, pitch, speed, effort)
+        velocity.set_loudness_balance(p, c, pitch, speed, effort)
 
 
 @compiled_exactly
@@ -347,16 +348,16 @@ def follow_pitch(p: Any, c: Any, slide_ms: float) -> None:
     pitch, before, was = note_pitch(p), p.string, p.finger_pitch
     p.finger_pitch = pitch
     if is_touched(p):
-        even_out(p, c)
+        set_loudness_balance(p, c)
         return
     string, position = stay(p, pitch, slide_ms == STEP_MS, requested_speed(p))
-    left_hand.stop(p, c, string, position, least_press(p, string), slide_ms)
+    left_hand.stop(p, c, string, position, min_press(p, string), slide_ms)
     if string != before:
         begin_tuning(p, pitch)
-    if string != before or not right_hand.is_bowed_alike(p, pitch):
+    if string != before or not right_hand.has_same_bowing(p, pitch):
         set_bow_pressure(p, c)
-        draw_on(p, c)
+        update_bow(p, c)
     if pitch != was:
         p.first_error, p.jumps = math.nan, 0
         pause_listening(p, c, max(slide_ms, 0.0))
-    even_out(p, c)
+    set_loudness_balance(p, c)

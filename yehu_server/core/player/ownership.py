@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.ramps import take
+from yehu_server.core.controls.ramps import start_ramp
 from yehu_server.core.player.parameter_indices import (
     BOW_ASSIST,
     BOW_FORCE,
@@ -22,18 +22,18 @@ from yehu_server.core.player.parameter_indices import (
     SMOOTH_MS,
 )
 
-USUAL_MS = -1.0  # the ramp of a parameter's own
+DEFAULT_RAMP_MS = -1.0  # a sentinel: the ramp time of the parameter itself
 
 
 @compiled_exactly
 def ramp_to(p: Any, c: Any, index: int, value: float, ramp_ms: float) -> None:
-    """Move a parameter of the engine, whoever owns it; in `ramp_ms`, or USUAL_MS."""
+    """Move a parameter of the engine, whoever owns it; in `ramp_ms`, or DEFAULT_RAMP_MS."""
     ramp_ms = SMOOTH_MS[index] if ramp_ms < 0.0 else ramp_ms
-    take(c, SLOT_OF[index], value, int(np.rint(ramp_ms * 1e-3 * p.rate)))
+    start_ramp(c, SLOT_OF[index], value, int(np.rint(ramp_ms * 1e-3 * p.rate)))
 
 
 @compiled_exactly
-def move(p: Any, c: Any, index: int, value: float, ramp_ms: float) -> None:
+def move_parameter(p: Any, c: Any, index: int, value: float, ramp_ms: float) -> None:
     """Move a parameter, unless it is taken over or already moving to this value."""
     if p.taken[index] != 0 or p.is_held[index] != 0 or p.sent[index] == value:
         return
@@ -43,7 +43,7 @@ def move(p: Any, c: Any, index: int, value: float, ramp_ms: float) -> None:
 
 
 @compiled_exactly
-def forget(p: Any, index: int) -> None:
+def invalidate_sent(p: Any, index: int) -> None:
     """Forget the value last sent, so that the next move is sent in any case."""
     p.sent[index] = math.nan
 
@@ -57,8 +57,8 @@ def write_directly(p: Any, c: Any, index: int, value: float, hold: bool) -> None
     mark_taken(p, index, hold)
     if index == BOW_FORCE:
         mark_taken(p, BOW_ASSIST, hold)
-        ramp_to(p, c, BOW_ASSIST, 0.0, USUAL_MS)
-    ramp_to(p, c, index, value, USUAL_MS)
+        ramp_to(p, c, BOW_ASSIST, 0.0, DEFAULT_RAMP_MS)
+    ramp_to(p, c, index, value, DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -68,14 +68,14 @@ def mark_taken(p: Any, index: int, hold: bool) -> None:
         p.is_held[index] = 1
     else:
         p.taken[index] = 1
-    forget(p, index)
+    invalidate_sent(p, index)
 
 
 @compiled_exactly
 def take_back(p: Any, index: int) -> None:
     """Own a parameter again, unless it is held."""
     p.taken[index] = 0
-    forget(p, index)
+    invalidate_sent(p, index)
 
 
 @compiled_exactly

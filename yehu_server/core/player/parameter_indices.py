@@ -12,7 +12,10 @@ PARAMETER_COUNT = len(TABLE)
 SLOT_OF = np.array([SLOT.get(param.address, -1) for param in TABLE])  # -1: not the engine's
 IS_PLAYER_CONTROLLED = np.array([param.player_controlled for param in TABLE])
 IS_ENGINES = np.array([param.place is Place.ENGINE for param in TABLE])
-LOWEST, HIGHEST = np.array([param.lo for param in TABLE]), np.array([param.hi for param in TABLE])
+LOWER_BOUNDS, UPPER_BOUNDS = (
+    np.array([param.lo for param in TABLE]),
+    np.array([param.hi for param in TABLE]),
+)
 SMOOTH_MS = np.array([param.smooth_ms for param in TABLE])
 
 # What the player moves.

@@ -18,19 +18,19 @@ from yehu_server.core.player.parameter_indices import (
     VARIATION,
 )
 
-# A sum of so many uniform numbers is all but normal.
-ADDED = 12
+# A sum of this many uniform numbers is nearly normal.
+SUMMED_UNIFORMS = 12
 # Standard deviations at full variation. By ear.
 VARIED_FRACTION = 0.1  # of bow speed and pressure
 VARIED_CENTS = 6.0
-VARIED_LANDING, MOST_LANDING = 0.8, 2.0  # of the time of a landing; and its largest factor
+VARIED_LANDING, MAX_LANDING = 0.8, 2.0  # of the time of a landing; and its largest factor
 
 
 @compiled_exactly
 def begin_sequence(p: Any, seed: int) -> None:
     """Begin the sequence of a seed."""
-    p.seed, p.drawn = seed, 0
-    p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.drawn = 0.0, 0.0, 0
+    p.seed, p.random_count = seed, 0
+    p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.random_count = 0.0, 0.0, 0
     p.drift_state.slow_deviate[:] = 0.0
 
 
@@ -39,7 +39,7 @@ def vary_next_note(p: Any) -> None:
     """Draw the deviates of a new note."""
     varied = p.value[VARIATION] * VARIED_FRACTION
     p.speed_variation = 1.0 + varied * deviate(p)
-    p.weight = 1.0 + varied * deviate(p)
+    p.pressure_variation = 1.0 + varied * deviate(p)
     p.detuned = deviate(p)
 
 
@@ -47,10 +47,10 @@ def vary_next_note(p: Any) -> None:
 def deviate(p: Any) -> float:
     """A number of mean 0 and variance 1; each of the uniform ones has a variance of 1/3."""
     total = 0.0
-    for _ in range(ADDED):
-        total += pseudorandom((p.seed << 32) + p.drawn)
-        p.drawn += 1
-    return total / math.sqrt(ADDED / 3.0)
+    for _ in range(SUMMED_UNIFORMS):
+        total += pseudorandom((p.seed << 32) + p.random_count)
+        p.random_count += 1
+    return total / math.sqrt(SUMMED_UNIFORMS / 3.0)
 
 
 @compiled_exactly
@@ -65,14 +65,14 @@ def varied_landing(p: Any, landing_ms: float) -> float:
     if p.value[VARIATION] == 0.0:
         return landing_ms
     factor = 1.0 + p.value[VARIATION] * VARIED_LANDING * deviate(p)
-    return float(landing_ms * min(max(factor, 1.0 / MOST_LANDING), MOST_LANDING))
+    return float(landing_ms * min(max(factor, 1.0 / MAX_LANDING), MAX_LANDING))
 
 
 # At full phrasing; by ear.
-SLIDE_MS, SHORTEST_SLIDE_MS = 130.0, 45.0
+SLIDE_MS, MIN_SLIDE_MS = 130.0, 45.0
 STEP_MS = -1.0  # in place of the time of a slide
 # A leap asks for a slide where it is so wide (semitones), from a note and to a note so long.
-LEAST_LEAP, WIDEST_LEAP, LONG_S = 4.5, 9.5, 0.3
+MIN_LEAP, MAX_LEAP, LONG_S = 4.5, 9.5, 0.3
 
 
 # Strokes that follow another within EASY_S are hurried, wholly from HURRIED_S on: the bow comes to
@@ -107,8 +107,8 @@ def slide_of_leap_ms(p: Any, c: Any, leap: float) -> float:
     """
     if p.value[PHRASING] == 0.0 or c.value[SIDE] == 0.0 or p.value[NOTE_LENGTH] > 0.0:
         return STEP_MS
-    is_wide = LEAST_LEAP < abs(leap) < WIDEST_LEAP
+    is_wide = MIN_LEAP < abs(leap) < MAX_LEAP
     is_long = c.frame - p.note_began > LONG_S * p.rate
     if not is_wide or not is_long:
         return STEP_MS
-    return float(SHORTEST_SLIDE_MS + (SLIDE_MS - SHORTEST_SLIDE_MS) * p.value[PHRASING])
+    return float(MIN_SLIDE_MS + (SLIDE_MS - MIN_SLIDE_MS) * p.value[PHRASING])

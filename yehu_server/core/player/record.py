@@ -9,7 +9,12 @@ import numpy as np
 
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.physics.quantities import Quantities
-from yehu_server.core.player.bowing import BOWING_SIZE, DEFAULT_BOWING, PLACES, default_bowing_table
+from yehu_server.core.player.bowing import (
+    BOW_POSITIONS,
+    BOWING_SIZE,
+    DEFAULT_BOWING,
+    default_bowing_table,
+)
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
 from yehu_server.core.player.drift import DRIFT_STATE
 from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
@@ -35,11 +40,11 @@ from yehu_server.core.player.parameter_indices import (
 from yehu_server.core.player.vibrato_table import STEPS, vibrato_table
 from yehu_server.params.table import TABLE
 
-# Of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
-LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES = 52, 11, 11
+# Bins of what is learnt: half semitones, quarter octaves of bow position, half octaves of speed.
+LEARNT_PITCHES, LEARNT_POSITIONS, LEARNT_SPEEDS = 52, 11, 11
 # Keys held at most. Beyond, the one held longest is let go: by the part (``midi.part_keys``), each
 # player of a section (``midi.section``) and each instrument (``held_keys``) of its own list.
-MOST_HELD = 256
+MAX_HELD = 256
 NOTES = len(PITCHES[0])  # measured on each string
 
 PLAYER = np.dtype(
@@ -53,9 +58,9 @@ PLAYER = np.dtype(
         ("glide_ms", np.float64),  # the least time of each move
         # The held keys, in the order pressed.
         ("held", np.int64),  # their number
-        ("held_channel", np.int64, MOST_HELD),
-        ("held_key", np.float64, MOST_HELD),
-        ("held_pitch", np.float64, MOST_HELD),  # fractional MIDI notes within range
+        ("held_channel", np.int64, MAX_HELD),
+        ("held_key", np.float64, MAX_HELD),
+        ("held_pitch", np.float64, MAX_HELD),  # fractional MIDI notes within range
         ("sounding", np.int64),  # number of the held key that sounds, SILENT or ENDING
         ("began", np.int64),  # the frame at which the stroke of the bow began
         ("note_began", np.int64),  # the frame at which the note did
@@ -79,7 +84,7 @@ PLAYER = np.dtype(
         ("first_press", np.float64),  # N: requested as the note began
         ("first_error", np.float64),  # cents: heard first; NaN: nothing yet
         ("first_sharper", np.float64),  # the correction then
-        ("learnt", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES)),  # cents
+        ("learnt", np.float64, (STRINGS, LEARNT_PITCHES, LEARNT_POSITIONS, LEARNT_SPEEDS)),  # cents
         (
             "corrects_pressure",
             np.int64,
@@ -93,23 +98,23 @@ PLAYER = np.dtype(
         (
             "learnt_pressure_factor",
             np.float64,
-            (STRINGS, LEARNT_PITCHES, LEARNT_PLACES, LEARNT_PACES),
+            (STRINGS, LEARNT_PITCHES, LEARNT_POSITIONS, LEARNT_SPEEDS),
         ),
         # The right hand.
         ("direction", np.float64),  # of the stroke
-        ("pace", np.float64),  # factor on the bow's speed, so that its hair lasts
+        ("stroke_speed_factor", np.float64),  # factor on the bow's speed, so that its hair lasts
         ("side", np.float64),  # /bow/side; 0 where the bow is lifted
         ("bowing", np.float64, BOWING_SIZE),  # how the sounding pitch is bowed
         ("hurry", np.float64),  # of a stroke soon after another: 0 to 1
         ("balance", np.float64),  # dB
         ("louder_by", np.float64),  # dB, by brilliance
-        # The variation: deviates of this note, and the random numbers drawn so far.
+        # The variation: deviates of this note.
         ("speed_variation", np.float64),  # factor on the bow's speed
-        ("weight", np.float64),  # factor on the bow's pressure
+        ("pressure_variation", np.float64),  # factor on the bow's pressure
         ("detuned", np.float64),  # semitones, at full variation
         ("player_number", np.int64),  # of a section, counted from 0
         ("seed", np.int64),
-        ("drawn", np.int64),
+        ("random_count", np.int64),  # drawn so far
         ("drift_state", DRIFT_STATE),  # drift and tremor
         # The instrument.
         ("bridge_x", np.float64),  # m
@@ -121,7 +126,7 @@ PLAYER = np.dtype(
         ("levels", np.float64, (STRINGS, NOTES + 1, len(SPEEDS))),  # dB
         ("centroids", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # Hz
         ("louder", np.float64, (STRINGS, NOTES + 1, len(GAINS))),  # dB
-        ("bowing_table", np.float64, (STRINGS, len(PLACES), NOTES_BOWED, BOWING_SIZE)),
+        ("bowing_table", np.float64, (STRINGS, len(BOW_POSITIONS), NOTES_BOWED, BOWING_SIZE)),
         ("vibrato_table", np.float64, (STEPS, 2)),  # `vibrato_table`
         ("open_strings", np.int64),  # number of the OpenStrings
     ],
@@ -182,7 +187,7 @@ def prepare_player(
     p["first_error"], p["pressure_factor"], p["corrects_pressure"] = np.nan, 1.0, 1
     prepare_ear(p["ear"], rate)
     p["gesture"] = RESTING
-    p["speed_variation"] = p["weight"] = p["pace"] = 1.0
+    p["speed_variation"] = p["pressure_variation"] = p["stroke_speed_factor"] = 1.0
     p["seed"], p["player_number"] = seed, player_number
     p["bridge_x"] = quantities.bridge_x
     p["wave_speed"] = [wave_speed(quantities, string) for string in range(STRINGS)]
@@ -215,7 +220,7 @@ def end_all(player: Any, controls: Any) -> None:
     player["string"], player["position"] = -1, OPEN
     player["taken"], player["sent"] = 0, np.nan
     reset_ear(player["ear"], int(controls["frame"]))  # a hop may be half done
-    player["direction"], player["pace"] = UP, 1.0
+    player["direction"], player["stroke_speed_factor"] = UP, 1.0
     player["gesture"] = RESTING
     for name in DRIFT_STATE.names or ():
         player["drift_state"][name] = 0

@@ -14,8 +14,8 @@ from yehu_server.core.player.bowing import (
     BOWING_SIZE,
     DISTANCE_FACTOR,
     TOP_SPEED,
+    bow_pressure_for,
     bowing_value,
-    share,
 )
 from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.gestures import (
@@ -26,9 +26,9 @@ from yehu_server.core.player.gestures import (
     tremolo_depth_of,
     tremolo_of,
 )
-from yehu_server.core.player.harmonics import NONE, PLACE
+from yehu_server.core.player.harmonics import HARMONIC_BOW_POSITION, NONE
 from yehu_server.core.player.intonation import in_tables
-from yehu_server.core.player.ownership import USUAL_MS, forget, move
+from yehu_server.core.player.ownership import DEFAULT_RAMP_MS, invalidate_sent, move_parameter
 from yehu_server.core.player.parameter_indices import (
     BOW_POSITION,
     BOW_PRESSURE,
@@ -47,7 +47,11 @@ from yehu_server.core.player.parameter_indices import (
     SPEED,
 )
 from yehu_server.core.player.phrasing import HURRIED_WEIGHT, hurried
-from yehu_server.core.player.velocity import BITE_MS, struck_bite, struck_speed
+from yehu_server.core.player.velocity import (
+    ATTACK_PRESSURE_MS,
+    attack_pressure_factor,
+    struck_speed,
+)
 from yehu_server.params.table import find
 
 Array = Any
@@ -55,26 +59,29 @@ Array = Any
 # Part of the time of an attack or a slur in which the bow changes to the other string, and the most
 # time; it meets that string half-way. Sooner, the string left rings on; later, there is a gap.
 CROSSING_PART, CROSSING_MS = 0.65, 36.0
-PUT_AWAY_MS = 20.0  # before a pluck
+LIFT_BEFORE_PLUCK_MS = 20.0  # before a pluck
 SLURRED_MS = 25.0  # ramp of bow speed from one slurred note to the next
 # Bow speed at dynamics 0, as a fraction of that at full dynamics. By ear.
-SOFTEST = 0.45
-LEAST_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow is lifted
-# A heavy stroke on the inner string begins with this share of its pressure: its first periods are
-# long under more, and it begins flat. Under LIGHTEST it may slip twice in a period. Tried at 0.3 to
-# 0.9 and 60 to 200 ms, F4 to B4, at three dynamics. Hurried strokes have little pressure already.
-LIGHTER, LIGHTEST, LIGHTER_MS = 0.65, 0.4, 150.0
+MIN_SPEED_FRACTION = 0.45
+MIN_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow is lifted
+# A heavy stroke on the inner string begins with this share of its pressure: with more, the first
+# periods are too long and the note begins flat. Under MIN_INNER_ATTACK it may slip twice in a
+# period. Tried at 0.3 to 0.9 and 60 to 200 ms, F4 to B4, at three dynamics. Hurried strokes have
+# little pressure already.
+INNER_ATTACK_FRACTION, MIN_INNER_ATTACK, INNER_ATTACK_MS = 0.65, 0.4, 150.0
 # Force of a pluck at medium pressure. By ear.
-PULL_N, MEDIUM = 1.2, 0.4
-HARDEST_PULL_N = find("/pluck/force").hi
-USUAL_PLUCK = find("/pluck/position").default
+PLUCK_FORCE_N, MEDIUM_PRESSURE = 1.2, 0.4
+MAX_PLUCK_FORCE_N = find("/pluck/force").hi
+DEFAULT_PLUCK_POSITION = find("/pluck/position").default
 
 
 @compiled_exactly
 def requested_speed(p: Any) -> float:
     """The bow speed that is asked for (m/s)."""
-    share = SOFTEST + (1.0 - SOFTEST) * p.value[DYNAMICS]
-    return float(p.value[SPEED] * share * struck_speed(p) * p.speed_variation * p.pace)
+    fraction = MIN_SPEED_FRACTION + (1.0 - MIN_SPEED_FRACTION) * p.value[DYNAMICS]
+    return float(
+        p.value[SPEED] * fraction * struck_speed(p) * p.speed_variation * p.stroke_speed_factor
+    )
 
 
 @compiled_exactly
@@ -82,13 +89,13 @@ def bowing_of(p: Any, pitch: float, column: int) -> float:
     """One value of how a pitch is bowed on the string of the fingering; see `bowing_value`."""
     string = max(p.string, 0)
     stopped = in_tables(p, string, pitch)
-    return bowing_value(p.bowing_table, string, requested_place(p), stopped, column)
+    return bowing_value(p.bowing_table, string, requested_position(p), stopped, column)
 
 
 @compiled_exactly
-def requested_place(p: Any) -> float:
-    """The bow's place that is asked for, as a share of the sounding length."""
-    return float(p.value[POSITION] if p.gesture.node == NONE else PLACE)
+def requested_position(p: Any) -> float:
+    """The bow position that is asked for, as a fraction of the sounding length."""
+    return float(p.value[POSITION] if p.gesture.node == NONE else HARMONIC_BOW_POSITION)
 
 
 @compiled_exactly
@@ -98,7 +105,7 @@ def speed_at(p: Any, pitch: float) -> float:
 
 
 @compiled_exactly
-def is_bowed_alike(p: Any, pitch: float) -> bool:
+def has_same_bowing(p: Any, pitch: float) -> bool:
     """Whether a pitch is bowed as the present one is."""
     for column in range(BOWING_SIZE):
         if bowing_of(p, pitch, column) != p.bowing[column]:
@@ -109,41 +116,47 @@ def is_bowed_alike(p: Any, pitch: float) -> bool:
 @compiled_exactly
 def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     """Set bow pressure and position, as requested and adapted to the sounding pitch, if any."""
-    pressure = p.value[PRESSURE] * p.weight * p.gesture.weight * hurried(p, HURRIED_WEIGHT)
+    pressure = (
+        p.value[PRESSURE] * p.pressure_variation * p.gesture.weight * hurried(p, HURRIED_WEIGHT)
+    )
     if is_sounding:
         for column in range(BOWING_SIZE):
             p.bowing[column] = bowing_of(p, pitch, column)
         m = p.bowing
-        pressure = share(m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0))
+        pressure = bow_pressure_for(
+            m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0)
+        )
         pressure *= p.pressure_factor
-    move(p, c, BOW_PRESSURE, pressure, USUAL_MS)
-    move(p, c, BOW_POSITION, requested_place(p) * p.bowing[DISTANCE_FACTOR], USUAL_MS)
+    move_parameter(p, c, BOW_PRESSURE, pressure, DEFAULT_RAMP_MS)
+    move_parameter(
+        p, c, BOW_POSITION, requested_position(p) * p.bowing[DISTANCE_FACTOR], DEFAULT_RAMP_MS
+    )
 
 
 @compiled_exactly
-def bite(p: Any, c: Any) -> None:
+def set_attack_pressure(p: Any, c: Any) -> None:
     """Begin a hard note with more pressure, and one on the inner string with less.
 
-    So begin strokes, and slurred notes on the other string, which was at rest.
+    This applies to new strokes, and to slurred notes on the string that was at rest.
     """
     usual = p.sent[BOW_PRESSURE]
-    begins, ms = struck_bite(p) * usual, BITE_MS
+    begins, ms = attack_pressure_factor(p) * usual, ATTACK_PRESSURE_MS
     if p.string == 0:
-        lighter = max(LIGHTER * usual, LIGHTEST)
-        begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), LIGHTER_MS
+        lighter = max(INNER_ATTACK_FRACTION * usual, MIN_INNER_ATTACK)
+        begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), INNER_ATTACK_MS
     if begins != usual:
-        move(p, c, BOW_PRESSURE, begins, 0.0)
-        move(p, c, BOW_PRESSURE, usual, ms)
+        move_parameter(p, c, BOW_PRESSURE, begins, 0.0)
+        move_parameter(p, c, BOW_PRESSURE, usual, ms)
 
 
 @compiled_exactly
 def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
     """Draw the bow on the string of a side; its speed changes in `ramp_ms`.
 
-    A lifted bow attacks in ``/playing/attack`` instead. Below LEAST_DYNAMICS the bow is
+    A lifted bow attacks in ``/playing/attack`` instead. Below MIN_DYNAMICS the bow is
     lifted.
     """
-    if p.value[DYNAMICS] < LEAST_DYNAMICS:
+    if p.value[DYNAMICS] < MIN_DYNAMICS:
         if p.side != 0.0:
             lift(p, c, p.value[RELEASE])
         return
@@ -152,41 +165,47 @@ def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
     is_on_string = c.value[SIDE] * side < 0.0 or p.side != 0.0
     crossing_ms = min(CROSSING_PART * ramp_ms, CROSSING_MS) if is_on_string else ramp_ms / 4.0
     p.side = side
-    move(p, c, BOW_SIDE, side, crossing_ms)
-    move(p, c, BOW_TREMOLO, tremolo_of(p), USUAL_MS)
-    move(p, c, BOW_TREMOLO_DEPTH, tremolo_depth_of(p), USUAL_MS)
-    move(p, c, BOW_SPEED, p.direction * speed_at(p, pitch), ramp_ms)
+    move_parameter(p, c, BOW_SIDE, side, crossing_ms)
+    move_parameter(p, c, BOW_TREMOLO, tremolo_of(p), DEFAULT_RAMP_MS)
+    move_parameter(p, c, BOW_TREMOLO_DEPTH, tremolo_depth_of(p), DEFAULT_RAMP_MS)
+    move_parameter(p, c, BOW_SPEED, p.direction * speed_at(p, pitch), ramp_ms)
 
 
 @compiled_exactly
 def lift(p: Any, c: Any, release_ms: float) -> None:
     """End the stroke in a time (ms)."""
     p.side = 0.0
-    move(p, c, BOW_SPEED, 0.0, release_ms)
-    move(p, c, BOW_SIDE, 0.0, release_ms)
+    move_parameter(p, c, BOW_SPEED, 0.0, release_ms)
+    move_parameter(p, c, BOW_SIDE, 0.0, release_ms)
 
 
 @compiled_exactly
 def pluck(p: Any, c: Any, side: float) -> None:
     """Pluck the string of a side where the articulation has it; lift the bow before."""
     if p.side != 0.0:
-        lift(p, c, PUT_AWAY_MS)
+        lift(p, c, LIFT_BEFORE_PLUCK_MS)
     if p.position == OPEN:
         clear_string(p, c)
     at = SHAPES[p.gesture.row, PLUCKED_AT]
     if at > 0.0:
-        move(p, c, PLUCK_POSITION, at, 0.0)
+        move_parameter(p, c, PLUCK_POSITION, at, 0.0)
     elif not math.isnan(p.sent[PLUCK_POSITION]):  # after one that was plucked elsewhere
-        move(p, c, PLUCK_POSITION, USUAL_PLUCK, 0.0)
-    force = PULL_N * p.value[PRESSURE] * p.weight * SHAPES[p.gesture.row, PLUCKED_BY] / MEDIUM
-    move(p, c, PLUCK_FORCE, side * min(force, HARDEST_PULL_N), USUAL_MS)
-    forget(p, PLUCK_FORCE)  # the next one may be as hard
+        move_parameter(p, c, PLUCK_POSITION, DEFAULT_PLUCK_POSITION, 0.0)
+    force = (
+        PLUCK_FORCE_N
+        * p.value[PRESSURE]
+        * p.pressure_variation
+        * SHAPES[p.gesture.row, PLUCKED_BY]
+        / MEDIUM_PRESSURE
+    )
+    move_parameter(p, c, PLUCK_FORCE, side * min(force, MAX_PLUCK_FORCE_N), DEFAULT_RAMP_MS)
+    invalidate_sent(p, PLUCK_FORCE)  # the next one may be as hard
 
 
 @compiled_exactly
 def clear_string(p: Any, c: Any) -> None:
     """Take all fingers from the strings at once: one that hovers would stop what a pluck swings."""
     for finger in range(FINGER_COUNT):
-        forget(p, FINGER_PRESS[finger])
-        move(p, c, FINGER_PRESS[finger], 0.0, 0.0)
+        invalidate_sent(p, FINGER_PRESS[finger])
+        move_parameter(p, c, FINGER_PRESS[finger], 0.0, 0.0)
         c.finger_up[finger] = c.park_after

@@ -1,8 +1,9 @@
-"""Strokes of a bow that has a length: planned, and turned before its ends. Compiled.
+"""Strokes of a bow that has a length: planned, and reversed before its ends. Compiled.
 
 A stroke whose note needs more hair than is left is drawn more slowly; where that is not enough, it
 goes the other way. In a rest the bow is lifted, and set down where the next stroke wants it. A bow
-that still comes to its end turns there.
+that still reaches its end changes direction there. The strokes of a tremolo are not planned here:
+their rate is in ``params.articulations``.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.parameter_indices import BOW_LENGTH, BOW_SPEED, DIRECTION, NOTE_LENGTH
 
 USUAL_S = 0.4  # a note lasts, where nothing says so
-SLOWEST = 0.6  # factor on the speed of a bow that has to last
-END = 0.04  # part of the bow at either end that strokes don't begin or end on
-START = 0.15  # part of the bow behind a stroke that begins after a rest: hair to go back on
+MIN_SPEED_FACTOR = 0.6  # factor on the speed of a bow that has to last
+END_FRACTION = 0.04  # part of the bow at either end that strokes don't begin or end on
+RESTART_FRACTION = 0.15  # behind a stroke that begins after a rest: hair to go back on
 CHANGE_MS = 28.0  # time in which a bow changes its direction within a note
 
 
@@ -25,13 +26,13 @@ CHANGE_MS = 28.0  # time in which a bow changes its direction within a note
 def hair_left(p: Any, c: Any, direction: float) -> float:
     """Hair (m) that is left for a stroke in a direction."""
     length = p.value[BOW_LENGTH]
-    left = length - c.place if direction > 0.0 else c.place
-    return float(left - END * length)
+    left = length - c.bow_displacement if direction > 0.0 else c.bow_displacement
+    return float(left - END_FRACTION * length)
 
 
 @compiled_exactly
 def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
-    """Choose direction and pace of the bow for a note at a speed (m/s).
+    """Choose direction of the bow, and factor on its speed, for a note at a speed (m/s).
 
     Returns
     -------
@@ -43,22 +44,26 @@ def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
     if not is_slur:
         p.direction = command if command != 0.0 else -p.direction
     length = p.value[BOW_LENGTH]
-    p.pace = 1.0
+    p.stroke_speed_factor = 1.0
     if length == 0.0:
         return bool(p.direction != before)
-    c.place = min(max(c.place, 0.0), length)
+    c.bow_displacement = min(max(c.bow_displacement, 0.0), length)
     is_known = p.value[NOTE_LENGTH] > 0.0
     needed = speed * (p.value[NOTE_LENGTH] if is_known else USUAL_S)
     if not is_slur and (p.side == 0.0 or command != 0.0):
-        begin = START if needed < (1.0 - START - END) * length else END
-        behind = length - hair_left(p, c, p.direction) - END * length
+        begin = (
+            RESTART_FRACTION
+            if needed < (1.0 - RESTART_FRACTION - END_FRACTION) * length
+            else END_FRACTION
+        )
+        behind = length - hair_left(p, c, p.direction) - END_FRACTION * length
         if command != 0.0 or hair_left(p, c, p.direction) < needed or behind < begin * length:
-            c.place = length * (begin if p.direction > 0.0 else 1.0 - begin)
+            c.bow_displacement = length * (begin if p.direction > 0.0 else 1.0 - begin)
     left, other = hair_left(p, c, p.direction), hair_left(p, c, -p.direction)
-    if left < SLOWEST * needed and left < other and command == 0.0:
+    if left < MIN_SPEED_FACTOR * needed and left < other and command == 0.0:
         p.direction, left = -p.direction, other
     if is_known and left < needed:
-        p.pace = max(SLOWEST, left / needed)
+        p.stroke_speed_factor = max(MIN_SPEED_FACTOR, left / needed)
     return bool(p.direction != before)
 
 

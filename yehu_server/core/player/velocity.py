@@ -1,9 +1,9 @@
 """What velocity does to a note: its loudness, evened out, by bow and by gain; its attack. Compiled.
 
-At NEUTRAL all is as the other parameters say. A harder note is bowed faster and gets its force
-sooner than its speed; a softer one begins gently. Force is not set here: mappings bind velocity to
-/playing/pressure (mappings/keyboard.toml). With that, the level rises by some 18 dB from 1 to 127
-(scripts/playability.py velocity).
+At NEUTRAL_VELOCITY all is as the other parameters say. A harder note is bowed faster and gets its
+force sooner than its speed; a softer one begins gently. Force is not set here: mappings bind
+velocity to /playing/pressure (mappings/keyboard.toml). With that, the level rises by some 18 dB
+from 1 to 127 (scripts/playability.py velocity).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from yehu_server.core.player.brilliance import set_brilliance
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.intonation import balance_db
-from yehu_server.core.player.ownership import move
+from yehu_server.core.player.ownership import move_parameter
 from yehu_server.core.player.parameter_indices import EVENNESS, OUTPUT_BALANCE, VELOCITY
 from yehu_server.params.table import find
 
@@ -26,7 +26,7 @@ RISING_MS, FALLING_MS = 90.0, 15.0
 
 
 @compiled_exactly
-def even_out(p: Any, c: Any, pitch: float, speed: float, effort: float) -> None:
+def set_loudness_balance(p: Any, c: Any, pitch: float, speed: float, effort: float) -> None:
     """Set colour and ``/output/balance`` for a pitch (fractional MIDI note).
 
     `speed` (m/s) is the bow's; `effort` (m/s) is it times its share of Schelleng's limit.
@@ -44,7 +44,7 @@ def even_out(p: Any, c: Any, pitch: float, speed: float, effort: float) -> None:
     if p.gesture.gain_db != p.gesture.gain_to and has_risen(p, c):  # it goes on in small steps
         ramp_ms = 1e3 * HOP_S
     p.balance = balance
-    move(p, c, OUTPUT_BALANCE, balance, ramp_ms)
+    move_parameter(p, c, OUTPUT_BALANCE, balance, ramp_ms)
 
 
 @compiled_exactly
@@ -53,43 +53,47 @@ def has_risen(p: Any, c: Any) -> bool:
     return bool(c.frame - p.note_began >= 1e-3 * RISING_MS * p.rate)
 
 
-NEUTRAL = find("/playing/velocity").default
+NEUTRAL_VELOCITY = find("/playing/velocity").default
 # At velocities of 0 and 1, by ear: gain (dB); factors on bow speed, time of attack and, above
-# NEUTRAL, pressure during the attack.
-SOFTER_DB, LOUDER_DB = -10.5, 3.7
-SLOWER, FASTER = 0.6, 1.2
-GENTLE, BITING = 1.75, 0.6
-BITE, BITE_MS = 1.3, 60.0
+# NEUTRAL_VELOCITY, pressure during the attack.
+SOFT_DB, HARD_DB = -10.5, 3.7
+SOFT_SPEED, HARD_SPEED = 0.6, 1.2
+SOFT_ATTACK, HARD_ATTACK = 1.75, 0.6
+HARD_ATTACK_PRESSURE, ATTACK_PRESSURE_MS = 1.3, 60.0
 
 
 @compiled_exactly
 def between(p: Any, softest: float, neutral: float, hardest: float) -> float:
-    """A value at the velocity of the note, from those at 0, NEUTRAL and 1."""
+    """A value at the velocity of the note, from those at 0, NEUTRAL_VELOCITY and 1."""
     velocity = p.value[VELOCITY]
-    if velocity < NEUTRAL:
-        return float(neutral + (softest - neutral) * (NEUTRAL - velocity) / NEUTRAL)
-    return float(neutral + (hardest - neutral) * (velocity - NEUTRAL) / (1.0 - NEUTRAL))
+    if velocity < NEUTRAL_VELOCITY:
+        return float(
+            neutral + (softest - neutral) * (NEUTRAL_VELOCITY - velocity) / NEUTRAL_VELOCITY
+        )
+    return float(
+        neutral + (hardest - neutral) * (velocity - NEUTRAL_VELOCITY) / (1.0 - NEUTRAL_VELOCITY)
+    )
 
 
 @compiled_exactly
 def struck_db(p: Any) -> float:
     """Gain (dB) of the note."""
-    return between(p, SOFTER_DB, 0.0, LOUDER_DB)
+    return between(p, SOFT_DB, 0.0, HARD_DB)
 
 
 @compiled_exactly
 def struck_speed(p: Any) -> float:
     """Factor on the bow's speed."""
-    return between(p, SLOWER, 1.0, FASTER)
+    return between(p, SOFT_SPEED, 1.0, HARD_SPEED)
 
 
 @compiled_exactly
 def struck_attack(p: Any) -> float:
     """Factor on the time of the attack."""
-    return between(p, GENTLE, 1.0, BITING)
+    return between(p, SOFT_ATTACK, 1.0, HARD_ATTACK)
 
 
 @compiled_exactly
-def struck_bite(p: Any) -> float:
+def attack_pressure_factor(p: Any) -> float:
     """Factor on the bow's pressure as a stroke begins."""
-    return between(p, 1.0, 1.0, BITE)
+    return between(p, 1.0, 1.0, HARD_ATTACK_PRESSURE)

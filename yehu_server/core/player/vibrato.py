@@ -1,7 +1,8 @@
 """The vibrato of a note: as requested, as its articulation wants it, or the player's own. Compiled.
 
 Styles of vibrato are articulations (``params.articulations``). A vibrato is narrower, and off the
-note's middle, where the body would swing its level (``vibrato_table``).
+note's middle, where the body would swing its level (``vibrato_table``). Default rate and delay are
+rows of ``params.table``.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from yehu_server.core.physics.elementary import pseudorandom
 from yehu_server.core.player.gestures import CENTS, DELAY_MS, HAS_VIBRATO, HERTZ, VIBRATOS
 from yehu_server.core.player.gestures import PRESS as PRESS_SHARE
 from yehu_server.core.player.gestures import UPWARD as UPWARD_SHARE
-from yehu_server.core.player.ownership import USUAL_MS, forget, move
+from yehu_server.core.player.ownership import DEFAULT_RAMP_MS, invalidate_sent, move_parameter
 from yehu_server.core.player.parameter_indices import (
     BEND,
     NOTE_LENGTH,
@@ -32,17 +33,17 @@ from yehu_server.core.player.parameter_indices import (
     VIBRATO_RATE,
     VIBRATO_UPWARD,
 )
-from yehu_server.core.player.vibrato_table import CENTRE, DEPTH_SHARE, STEPS, USUAL
+from yehu_server.core.player.vibrato_table import CENTRE, DEFAULT_DEPTH_CENTS, DEPTH_SHARE, STEPS
 
 # The player's own, at full phrasing; by ear.
-OWN_CENTS, LATE_MS = 60.0, 750.0
-HEARD_S = 0.6  # of a note, from which on one hears it
+OWN_CENTS, OWN_DELAY_MS = 60.0, 750.0
+AUDIBLE_FROM_S = 0.6  # length of a note from which its vibrato is audible
 # It is narrower near the nut [Pop]: its share there, and from where on it is whole.
 AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
 FADING_MS = 600.0  # after the last note
 # How players of a section differ in rate, depth and delay of their vibrato, and its least factor.
 OTHER_RATE, OTHER_DEPTH, OTHER_DELAY = 0.3, 0.9, 1.2
-LEAST_OTHER = 0.4
+MIN_OTHER = 0.4
 FRAMES_FROM = 3 << 30  # of the seed's numbers: those that frames have; `drift` has some before
 
 
@@ -54,14 +55,14 @@ def set_vibrato(p: Any, c: Any) -> None:
     cents, upward = row[CENTS] if own else requested_cents(p), row[UPWARD_SHARE] if own else 0.0
     if upward == 0.0:
         at = vibrato_row(p)
-        cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, USUAL))
+        cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, DEFAULT_DEPTH_CENTS))
         upward = p.vibrato_table[at, CENTRE]
     hertz = row[HERTZ] if own else p.value[PLAYING_VIBRATO_RATE]
     press = row[PRESS_SHARE] if own else p.value[PLAYING_VIBRATO_PRESS]
-    move(p, c, VIBRATO_DEPTH, cents * other_factor(p, 1, OTHER_DEPTH), USUAL_MS)
-    move(p, c, VIBRATO_PRESS, press, USUAL_MS)
-    move(p, c, VIBRATO_UPWARD, upward, USUAL_MS)
-    move(p, c, VIBRATO_RATE, hertz * other_factor(p, 0, OTHER_RATE), USUAL_MS)
+    move_parameter(p, c, VIBRATO_DEPTH, cents * other_factor(p, 1, OTHER_DEPTH), DEFAULT_RAMP_MS)
+    move_parameter(p, c, VIBRATO_PRESS, press, DEFAULT_RAMP_MS)
+    move_parameter(p, c, VIBRATO_UPWARD, upward, DEFAULT_RAMP_MS)
+    move_parameter(p, c, VIBRATO_RATE, hertz * other_factor(p, 0, OTHER_RATE), DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -71,16 +72,16 @@ def begin_vibrato(p: Any, c: Any) -> None:
     delay_ms *= other_factor(p, 2, OTHER_DELAY)
     if p.player_number != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
         c.vibrato = phase_of(p, c)
-    move(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
+    move_parameter(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
     if delay_ms > 0.0:
-        move(p, c, VIBRATO_ONSET, 1.0, delay_ms)
+        move_parameter(p, c, VIBRATO_ONSET, 1.0, delay_ms)
 
 
 @compiled_exactly
 def end_vibrato(p: Any, c: Any) -> None:
     """Let the vibrato fade with the last note, or the finger would rock the string on for ever."""
-    move(p, c, VIBRATO_ONSET, 0.0, FADING_MS)
-    forget(p, VIBRATO_ONSET)  # the next note may begin while it fades
+    move_parameter(p, c, VIBRATO_ONSET, 0.0, FADING_MS)
+    invalidate_sent(p, VIBRATO_ONSET)  # the next note may begin while it fades
 
 
 @compiled_exactly
@@ -92,7 +93,7 @@ def has_vibrato(p: Any) -> bool:
 @compiled_exactly
 def is_sure(p: Any) -> bool:
     """Whether phrasing gives a note a vibrato, and it is known to last long enough for one."""
-    is_long = p.value[PHRASING] > 0.0 and p.value[NOTE_LENGTH] >= HEARD_S
+    is_long = p.value[PHRASING] > 0.0 and p.value[NOTE_LENGTH] >= AUDIBLE_FROM_S
     is_straight = has_vibrato(p) and VIBRATOS[p.gesture.row, CENTS] == 0.0
     return bool(is_long and not is_straight)
 
@@ -112,7 +113,7 @@ def requested_delay_ms(p: Any) -> float:
     """Time in which the vibrato of a new note comes: as requested; the player's own comes late."""
     if p.value[VIBRATO] > 0.0 or p.value[PHRASING] == 0.0:
         return float(p.value[PLAYING_VIBRATO_DELAY])
-    return float(max(p.value[PLAYING_VIBRATO_DELAY], LATE_MS))
+    return float(max(p.value[PLAYING_VIBRATO_DELAY], OWN_DELAY_MS))
 
 
 @compiled_exactly
@@ -144,7 +145,7 @@ def other_factor(p: Any, number: int, varied: float) -> float:
     if p.player_number == 0:
         return 1.0
     differs = math.sqrt(3.0) * pseudorandom((p.player_number << 32) + number)
-    return float(max(1.0 + p.value[VARIATION] * varied * differs, LEAST_OTHER))
+    return float(max(1.0 + p.value[VARIATION] * varied * differs, MIN_OTHER))
 
 
 @compiled_exactly

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics.elementary import decibels, each, exp2
+from yehu_server.core.physics.elementary import decibels, elementwise, exp2
 from yehu_server.core.physics.quantities import Body
 from yehu_server.core.physics.radiation import magnitude, response_parts
 from yehu_server.core.physics.shelf import shelf_gain
@@ -26,11 +26,11 @@ STEPS = 53  # half semitones from the lowest note up
 DEPTH_SHARE, CENTRE = range(2)  # columns of the table
 # Depths to either side (cents): the usual; the narrowest that people play [Pop]; and what is left
 # where even that swings too far.
-USUAL, NARROW, LEAST = 30, 20, 15
-MOST_OFF = 8  # cents: a middle as near to the note is in tune
+DEFAULT_DEPTH_CENTS, NARROW_DEPTH_CENTS, MIN_DEPTH_CENTS = 30, 20, 15
+MAX_OFF_CENTS = 8  # cents: a middle as near to the note is in tune
 # From the loudest to the softest moment of a turn, of the usual vibrato and of a narrow one, where
 # the pitch strays: near a mode of the body it goes farther than the finger.
-MOST_DB, MOST_NARROW_DB, STRAY = 5.0, 6.0, 8
+MAX_DB, MAX_NARROW_DB, STRAY = 5.0, 6.0, 8
 HARMONICS = 8
 
 
@@ -47,12 +47,14 @@ def vibrato_table(
     Returns
     -------
     ndarray [shape=(STEPS, 2)]
-        DEPTH_SHARE is the depth, as a share of USUAL, and of a wider one; CENTRE how far the middle
-        is above the note, as a share of the depth.
+        DEPTH_SHARE is the depth, as a share of DEFAULT_DEPTH_CENTS, and of a wider one; CENTRE
+        how far the middle is above the note, as a share of the depth.
     """
-    margin = USUAL + STRAY + MOST_OFF
+    margin = DEFAULT_DEPTH_CENTS + STRAY + MAX_OFF_CENTS
     pitches = open_notes[0] + 0.01 * np.arange(-margin, 50 * (STEPS - 1) + margin + 1)
-    frequency_hz = np.outer(a4 * each(exp2, (pitches - 69.0) / 12.0), np.arange(1, HARMONICS + 1))
+    frequency_hz = np.outer(
+        a4 * elementwise(exp2, (pitches - 69.0) / 12.0), np.arange(1, HARMONICS + 1)
+    )
     heard = _plain(body, frequency_hz)
     table = np.empty((STEPS, 2))
     for row in range(STEPS):
@@ -65,7 +67,7 @@ def vibrato_table(
             gain_db, shelf_hz = usual_shelf(centroids[string], string, on_a_yehu)
             own = own * shelf_gain(frequency_hz[near], body.radiation_rate, gain_db, shelf_hz)
         depth, off = _way(decibels((own * own).sum(axis=1) + 1e-30), margin)
-        table[row] = depth / USUAL, off / depth
+        table[row] = depth / DEFAULT_DEPTH_CENTS, off / depth
     table.flags.writeable = False
     return table
 
@@ -81,12 +83,16 @@ def _way(level: Array, note: int) -> tuple[int, int]:
         return float(np.ptp(level[note + off - reach : note + off + reach + 1]))
 
     def evenest(depth: int) -> int:
-        offs = sorted(range(-MOST_OFF, MOST_OFF + 1), key=abs)
+        offs = sorted(range(-MAX_OFF_CENTS, MAX_OFF_CENTS + 1), key=abs)
         return min(offs, key=lambda off: swing(depth, off))
 
-    if swing(USUAL, 0) <= MOST_DB:
-        return USUAL, 0
-    depth = NARROW if swing(NARROW, evenest(NARROW)) <= MOST_NARROW_DB else LEAST
+    if swing(DEFAULT_DEPTH_CENTS, 0) <= MAX_DB:
+        return DEFAULT_DEPTH_CENTS, 0
+    depth = (
+        NARROW_DEPTH_CENTS
+        if swing(NARROW_DEPTH_CENTS, evenest(NARROW_DEPTH_CENTS)) <= MAX_NARROW_DB
+        else MIN_DEPTH_CENTS
+    )
     return depth, evenest(depth)
 
 

@@ -51,14 +51,14 @@ def write_ring(ring: Array, row: Array, start: int, mask: int, frames: int) -> N
 
 @compiled_exactly_apart
 def blend(row: Array, was: Array, share: Array, frames: int) -> None:
-    """Turn a row into what it was, by a share for each frame."""
+    """Blend a row with what it was, by a share for each frame."""
     for n in range(np.uint64(frames)):
         row[n] += share[n] * (was[n] - row[n])
 
 
 @compiled_exactly_apart
 def absorb(row: Array, b_0: Array, b_1: Array, a_1: Array, state: Array, frames: int) -> None:
-    """Let air and walls take their part of what left each line: a filter of first order."""
+    """Apply the absorption of air and walls to each line's output: a first-order filter."""
     for n in range(np.uint64(frames)):
         for i in range(LINES):
             x = row[i, n]
@@ -68,8 +68,8 @@ def absorb(row: Array, b_0: Array, b_1: Array, a_1: Array, state: Array, frames:
 
 
 @compiled_exactly_apart
-def hear(row: Array, gain: Array, heard: Array, frames: int) -> None:
-    """Write what both ears hear of the lines: the left the even ones, the right the odd ones."""
+def read_lines(row: Array, gain: Array, heard: Array, frames: int) -> None:
+    """Write the output for both ears: the left has the even lines, the right the odd ones."""
     for n in range(np.uint64(frames)):
         for ear in range(2):
             plus = (row[ear, n] + row[ear + 2, n]) + (row[ear + 4, n] + row[ear + 6, n])

@@ -59,10 +59,10 @@ def prepare_sides(sides: Any, rate: float, body: int = 0) -> None:
     warped = tan(math.pi * FROM_HZ / rate)
     sides["pass_b"] = 1.0 / (1.0 + warped)
     sides["pass_a"] = (1.0 - warped) / (1.0 + warped)
-    rest_sides(sides)
+    clear_sides(sides)
 
 
-def rest_sides(sides: Any) -> None:
+def clear_sides(sides: Any) -> None:
     """Clear the filters of a record of dtype SIDES, in place."""
     for name in ("soon", "later", "passed", "before"):
         sides[name] = 0.0
@@ -87,7 +87,7 @@ def side_signal(s: Any, x: float) -> float:
 
 
 @compiled_exactly
-def clear_sides(s: Any) -> None:
+def reset_sides(s: Any) -> None:
     """Clear the filters while sound runs. Real time: safe."""
     for k in range(PASSES):
         s.passed[k], s.before[k] = 0.0, 0.0

@@ -15,32 +15,32 @@ from yehu_server.core.physics.elementary import cos, exp, sin
 
 Array = Any
 
-SOUND = 343.0  # m/s
+SPEED_OF_SOUND = 343.0  # m/s
 WALLS = 6
 EARS = 2
-WIDTH, HEIGHT = 0.83, 0.62  # of a room, over its length
+WIDTH_RATIO, HEIGHT_RATIO = 0.83, 0.62  # of a room, over its length
 LISTENER_X, LISTENER_Y = 0.46, 0.31  # over width and length of the room
-# Both sit, and in a room that is lower than this, lower: m, and over its height.
-LISTENER_Z, PLAYER_Z = 1.2, 0.8
-LISTENER_HIGHEST, PLAYER_HIGHEST = 0.45, 0.3
-WALL_GAP = 0.3  # m; the least from a player to a wall
-EAR_X = 0.085  # m from the middle of the head
-FAR_SIDE = math.pi / 4.0  # direction of a player at pan 1, to the right of straight ahead
-REFERENCE = 2.0  # m; a player at this distance is as loud as without a room
-SIDED = 0.7  # how much more an ear takes in from its own side
+# Heights of listener and player, who sit; and their largest share of the room's height.
+LISTENER_HEIGHT_M, PLAYER_HEIGHT_M = 1.2, 0.8
+MAX_LISTENER_HEIGHT_RATIO, MAX_PLAYER_HEIGHT_RATIO = 0.45, 0.3
+MIN_WALL_GAP_M = 0.3  # from a player to a wall
+EAR_X_M = 0.085  # from the middle of the head
+MAX_AZIMUTH = math.pi / 4.0  # direction of a player at pan 1, to the right of straight ahead
+REFERENCE_DISTANCE_M = 2.0  # a player at this distance is as loud as without a room
+EAR_DIRECTIVITY = 0.7  # how much more an ear receives from its own side
 SABINE = 0.161  # s/m
 
 
 @compiled_exactly
 def volume(size: float) -> float:
     """Volume (m^3) of a room, by its length (m)."""
-    return size * size * size * WIDTH * HEIGHT
+    return size * size * size * WIDTH_RATIO * HEIGHT_RATIO
 
 
 @compiled_exactly
 def surface(size: float) -> float:
     """Area (m^2) of all walls of a room, by its length (m)."""
-    return 2.0 * size * size * (WIDTH + HEIGHT + WIDTH * HEIGHT)
+    return 2.0 * size * size * (WIDTH_RATIO + HEIGHT_RATIO + WIDTH_RATIO * HEIGHT_RATIO)
 
 
 @compiled_exactly
@@ -57,14 +57,17 @@ def reflection(size: float, decay: float) -> float:
 
 @compiled_exactly
 def diffuse_level(size: float, decay: float) -> float:
-    """Amplitude of the reverberant field over that of the direct sound at REFERENCE [Kuttruff]."""
+    """Amplitude of the reverberant field, over that of the direct sound [Kuttruff].
+
+    The direct sound is that at REFERENCE_DISTANCE_M.
+    """
     absorbing = SABINE * volume(size) / decay
-    return math.sqrt(16.0 * math.pi * REFERENCE * REFERENCE / absorbing)
+    return math.sqrt(16.0 * math.pi * REFERENCE_DISTANCE_M * REFERENCE_DISTANCE_M / absorbing)
 
 
 @compiled_exactly
-def within(value: float, lo: float, hi: float) -> float:
-    """The value nearest to one that lies within bounds."""
+def clamp(value: float, lo: float, hi: float) -> float:
+    """Clamp a value to bounds."""
     return min(max(value, lo), hi)
 
 
@@ -86,15 +89,15 @@ def find_images(
     delays : ndarray [shape=(EARS, WALLS), s]
         Written: how much later than the direct sound each image is heard.
     gains : ndarray [shape=(EARS, WALLS)]
-        Written: amplitudes; the direct sound at REFERENCE has 1.
+        Written: amplitudes; the direct sound at REFERENCE_DISTANCE_M has 1.
     """
-    width, height = WIDTH * size, HEIGHT * size
+    width, height = WIDTH_RATIO * size, HEIGHT_RATIO * size
     at_x, at_y = LISTENER_X * width, LISTENER_Y * size
-    at_z = min(LISTENER_Z, LISTENER_HIGHEST * height)
-    direction = FAR_SIDE * pan
-    x = within(at_x + distance * sin(direction), WALL_GAP, width - WALL_GAP)
-    y = within(at_y + distance * cos(direction), WALL_GAP, size - WALL_GAP)
-    z = min(PLAYER_Z, PLAYER_HIGHEST * height)
+    at_z = min(LISTENER_HEIGHT_M, MAX_LISTENER_HEIGHT_RATIO * height)
+    direction = MAX_AZIMUTH * pan
+    x = clamp(at_x + distance * sin(direction), MIN_WALL_GAP_M, width - MIN_WALL_GAP_M)
+    y = clamp(at_y + distance * cos(direction), MIN_WALL_GAP_M, size - MIN_WALL_GAP_M)
+    z = min(PLAYER_HEIGHT_M, MAX_PLAYER_HEIGHT_RATIO * height)
     direct = length(x - at_x, y - at_y, z - at_z)
     reflected = reflection(size, decay)
     for wall in range(WALLS):
@@ -111,13 +114,16 @@ def find_images(
             image_z = -z
         else:
             image_z = 2.0 * height - z
-        aside = (image_x - at_x) / length(image_x - at_x, image_y - at_y, image_z - at_z)
+        lateral_cosine = (image_x - at_x) / length(image_x - at_x, image_y - at_y, image_z - at_z)
         for ear in range(EARS):
             side = 2.0 * ear - 1.0
-            way = length(image_x - at_x - side * EAR_X, image_y - at_y, image_z - at_z)
-            delays[ear, wall] = max(0.0, way - direct) / SOUND
+            path_m = length(image_x - at_x - side * EAR_X_M, image_y - at_y, image_z - at_z)
+            delays[ear, wall] = max(0.0, path_m - direct) / SPEED_OF_SOUND
             gains[ear, wall] = (
-                reflected * REFERENCE / max(way, REFERENCE) * math.sqrt(1.0 + side * SIDED * aside)
+                reflected
+                * REFERENCE_DISTANCE_M
+                / max(path_m, REFERENCE_DISTANCE_M)
+                * math.sqrt(1.0 + side * EAR_DIRECTIVITY * lateral_cosine)
             )
 
 

@@ -23,22 +23,25 @@ from yehu_server.core.stage.delay_lines import (
     absorb,
     add_ring,
     blend,
-    hear,
     mix,
+    read_lines,
     read_ring,
     write_ring,
 )
 
 Array = Any
 
-EVERY = 32  # frames from one check of what is asked of a room to the next
-LENGTH = 1 << 15  # most frames of a line, and of the span that it is kept in
+CHECK_FRAMES = 32  # frames from one check of what is asked of a room to the next
+MAX_LINE_FRAMES = 1 << 15  # most frames of a line, and of the span that it is kept in
 # Frames between two lines: with a span of a power of two alone, all would fall into the same set of
 # the processor's cache.
-APART = LENGTH + 24
-SHORTEST, LONGEST = 0.5, 1.5  # of the lines, over the middle one
-LEAST_S, MOST_S = 0.03, 0.11  # of the middle line; shorter ones have too few modes not to ring
-PATHS = 3.0  # mean free paths in the middle line
+LINE_STRIDE = MAX_LINE_FRAMES + 24
+MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 0.5, 1.5  # of the lines, over the middle one
+MIN_MIDDLE_S, MAX_MIDDLE_S = (
+    0.03,
+    0.11,
+)  # of the middle line; shorter ones have too few modes not to ring
+MIDDLE_LINE_PATHS = 3.0  # mean free paths in the middle line
 INTO_LINES = 1.0 / math.sqrt(LINES)
 # When sound enters each line, and with which sign: the left in even lines, the right in odd ones.
 # Drawn at random, one in each eighth of the time, and of those the ones with the evenest tail.
@@ -47,22 +50,22 @@ ENTRY_S = 1e-3 * np.array([
     1.18, 25.06, 4.17, 0.5, 22.98, 21.7, 27.15, 17.82,
 ])  # fmt: skip
 ENTRY_SIGN = np.array([1, -1, 1, 1, -1, -1, 1, 1, 1, -1, 1, 1, 1, 1, 1, 1], np.float64)
-ENTRIES = 1 << 13  # most frames until sound has entered all lines
+MAX_ENTRY_FRAMES = 1 << 13  # most frames until sound has entered all lines
 DIFFUSERS = 2  # all-pass filters before them, which decay sooner than any room
 DIFFUSER_LENGTH = 1 << 9
 DIFFUSION = 0.6  # their coefficient
 DIFFUSER_S = np.array([[0.0009, 0.0023], [0.0011, 0.0021]])
-# Which line's sound enters a line again: so that two ways round of the same lines in another order,
-# which take the same time, do not add up.
-TURN, SHIFT = 5, 3
-LARGEST_GAP = 128 + CHUNK  # frames by which a prime may be longer than asked, and a block
+# Line i gets back the sound of line FEEDBACK_FACTOR i + FEEDBACK_OFFSET, so that two paths through
+# the same lines in another order, which take the same time, do not add up.
+FEEDBACK_FACTOR, FEEDBACK_OFFSET = 5, 3
+MAX_GAP = 128 + CHUNK  # frames by which a prime may be longer than asked, and a block
 MOVE_S = 0.05  # in which lines take on the lengths of another size
 CLOSE_S, OPEN_S = 0.005, 0.02  # fades when the room is emptied
-# Of what is in the lines, in full scale: 55 dB below half a step of 24 bits, as eight are heard at
-# once. It cannot grow, since the matrix keeps the energy.
-QUIET = 1e-10
+# Level in the lines that counts as silence (full scale): 55 dB below half a step of 24 bits, as
+# eight are heard at once. It cannot grow, since the matrix keeps the energy.
+SILENCE_AMPLITUDE = 1e-10
 
-ROOM = np.dtype(
+LATE_FIELD = np.dtype(
     [
         ("rate", np.float64),  # Hz
         # Frames that lines, and what entered, are kept for, less 1: powers of two, as few as do.
@@ -96,7 +99,7 @@ ROOM = np.dtype(
         ("state", np.float64, LINES),  # of the filters
         ("entry", np.int64, LINES),  # frames
         ("entry_gain", np.float64, LINES),
-        # Of each of the frames that are computed at once: what is in the lines; what one line gave
+        # For each of the frames that are computed at once: what is in the lines; what one line gave
         # before a move, and its share; the amplitude that is heard; how far the room is open.
         ("row", np.float64, (LINES, CHUNK)),
         ("was", np.float64, CHUNK),
@@ -105,24 +108,24 @@ ROOM = np.dtype(
         ("opened", np.float64, CHUNK),
         ("diffuser_length", np.int64, (2, DIFFUSERS)),
         ("diffuser", np.float64, (2, DIFFUSERS, DIFFUSER_LENGTH)),
-        ("entered", np.float64, (2, ENTRIES)),
-        ("line", np.float64, (LINES, APART)),
+        ("entered", np.float64, (2, MAX_ENTRY_FRAMES)),
+        ("line", np.float64, (LINES, LINE_STRIDE)),
     ],
     align=True,
 )
 
 
 def power_of_two(least: float) -> int:
-    """The least power of two that is no less than a number."""
+    """The least power of two that is at least a number."""
     return 1 << math.ceil(log2(least))
 
 
 def prepare_room(room: Any, rate: float) -> None:
-    """Prepare a record of dtype ROOM [shape=()] for a rate (Hz), in place: an empty room."""
+    """Prepare a record of dtype LATE_FIELD [shape=()] for a rate (Hz), in place: an empty room."""
     room["rate"] = rate
     room["close_step"], room["open_step"] = 1.0 / (CLOSE_S * rate), 1.0 / (OPEN_S * rate)
     room["move_step"] = 1.0 / (MOVE_S * rate)
-    room["mask"] = power_of_two(LONGEST * MOST_S * rate + LARGEST_GAP) - 1
+    room["mask"] = power_of_two(MAX_LENGTH_RATIO * MAX_MIDDLE_S * rate + MAX_GAP) - 1
     room["entry_mask"] = power_of_two(ENTRY_S.max() * rate + CHUNK) - 1
     room["entry"] = np.round(ENTRY_S * rate)
     room["diffuser_length"] = np.round(DIFFUSER_S * rate)
@@ -130,7 +133,7 @@ def prepare_room(room: Any, rate: float) -> None:
 
 
 def empty_room(room: Any) -> None:
-    """Take all sound out of a record of dtype ROOM, in place."""
+    """Take all sound out of a record of dtype LATE_FIELD, in place."""
     for name in ("state", "diffuser", "entered", "line", "open", "row"):
         room[name] = 0.0
     # A room of no size is closed; that which is asked for first is open at once.
@@ -174,7 +177,7 @@ def is_settled(r: Any, size: float, decay: float, damping: float) -> bool:
 @compiled_exactly
 def reset_state(r: Any) -> None:
     """Clear all sound and filter state after an invalid sample. Real time: safe."""
-    r.size, r.open, r.closing, r.emptying = 0.0, 0.0, 1, LENGTH
+    r.size, r.open, r.closing, r.emptying = 0.0, 0.0, 1, MAX_LINE_FRAMES
     r.is_asleep, r.is_watched = 0, 0
 
 
@@ -182,11 +185,11 @@ def reset_state(r: Any) -> None:
 def measure(r: Any, size: float) -> None:
     """Give the lines the lengths that belong to a size (m): primes, in equal ratios."""
     r.size = size
-    middle = PATHS * image_sources.mean_free_path(size) / image_sources.SOUND
-    middle = min(max(middle, LEAST_S), MOST_S)
+    middle = MIDDLE_LINE_PATHS * image_sources.mean_free_path(size) / image_sources.SPEED_OF_SOUND
+    middle = min(max(middle, MIN_MIDDLE_S), MAX_MIDDLE_S)
     frames = 0
     for i in range(LINES):
-        ratio = SHORTEST * power(LONGEST / SHORTEST, i / (LINES - 1.0))
+        ratio = MIN_LENGTH_RATIO * power(MAX_LENGTH_RATIO / MIN_LENGTH_RATIO, i / (LINES - 1.0))
         r.was_length[i] = r.length[i]
         r.length[i] = next_prime(int(middle * ratio * r.rate))
         frames += r.length[i]
@@ -265,10 +268,11 @@ def is_open(r: Any) -> bool:
 def begin_window(r: Any) -> None:
     """Begin a window of as many frames as lines are kept for; fall asleep after a silent one.
 
-    Where nothing entered in a whole window, and all that lines were given in it is QUIET, all that
-    they keep is. It stays there: what enters later wakes the room, and mixes with it.
+    Where nothing entered in a whole window, and all that lines were given in it is below
+    SILENCE_AMPLITUDE, all that they keep is. It stays there: what enters later wakes the room,
+    and mixes with it.
     """
-    r.is_asleep = 1 if r.is_watched != 0 and r.loudest < QUIET and is_open(r) else 0
+    r.is_asleep = 1 if r.is_watched != 0 and r.loudest < SILENCE_AMPLITUDE and is_open(r) else 0
     r.is_watched, r.loudest = 1 - r.is_asleep, 0.0
 
 
@@ -342,11 +346,17 @@ def advance_lines(r: Any, frame: int, level: Array, opened: Array, heard: Array)
             read_ring(r.was, r.line[i], frame - r.was_length[i], r.mask, frames)
             blend(row[i], r.was, r.share, frames)
     absorb(row, r.b_0, r.b_1, r.a_1, r.state, frames)
-    hear(row, r.gain, heard, frames)
+    read_lines(row, r.gain, heard, frames)
     if not is_empty:
         for i in range(LINES):
             entered, gain = r.entered[i & 1], r.entry_gain[i]
             add_ring(row[i], entered, frame - r.entry[i], r.entry_mask, gain, frames)
     mix(row, frames)
     for i in range(LINES):
-        write_ring(r.line[i], row[(TURN * i + SHIFT) & (LINES - 1)], frame, r.mask, frames)
+        write_ring(
+            r.line[i],
+            row[(FEEDBACK_FACTOR * i + FEEDBACK_OFFSET) & (LINES - 1)],
+            frame,
+            r.mask,
+            frames,
+        )

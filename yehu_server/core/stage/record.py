@@ -8,11 +8,11 @@ import numpy as np
 
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.stage.image_sources import EARS
-from yehu_server.core.stage.late_field import ROOM, empty_room, prepare_room
+from yehu_server.core.stage.late_field import LATE_FIELD, empty_room, prepare_room
 
 TAPE = 1 << 19  # the last frames, for recorders: 10 s at 48 kHz
 BUSES = 6
-# Of both ears: the direct sound, what enters the room, what is reflected at once.
+# Columns, for both ears: the direct sound, what enters the room, what is reflected at once.
 DIRECT, SEND, EARLY = 0, 2, 4
 
 STAGE = np.dtype(
@@ -33,7 +33,7 @@ STAGE = np.dtype(
         ("window_power", np.float64),
         ("peak", np.float64),
         ("rms", np.float64),
-        ("room", ROOM),
+        ("room", LATE_FIELD),
         ("tape", np.float32, (TAPE, EARS)),
     ],
     align=True,
@@ -48,6 +48,6 @@ def prepare_stage(stage: Any, rate: float, channels: int, *, has_room: bool) -> 
     prepare_room(stage["room"], rate)
 
 
-def rest_stage(stage: Any) -> None:
+def clear_stage(stage: Any) -> None:
     """Take all sound out of a record of dtype STAGE, in place."""
     empty_room(stage["room"])

@@ -9,12 +9,12 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.stage import absorption, image_sources
-from yehu_server.core.stage.directivity import SIDES, clear_sides, prepare_sides, rest_sides
-from yehu_server.core.stage.image_sources import EARS, REFERENCE, WALLS
+from yehu_server.core.stage.directivity import SIDES, clear_sides, prepare_sides, reset_sides
+from yehu_server.core.stage.image_sources import EARS, REFERENCE_DISTANCE_M, WALLS
 from yehu_server.core.stage.late_field import CLOSE_S
 
-SPAN = 1 << 16  # frames of sound that are kept for reflections
-MOVE_S = 0.03  # in which reflections move to where they belong now
+HISTORY_FRAMES = 1 << 16  # frames of sound that are kept for reflections
+CROSSFADE_S = 0.03  # from the previous reflections to the new ones
 LEFT, RIGHT = 0, 1
 
 SEAT = np.dtype(
@@ -25,15 +25,15 @@ SEAT = np.dtype(
         ("direct", np.float64, EARS),
         ("direct_step", np.float64, EARS),
         ("send", np.float64, EARS),
-        # The reflections: those heard now, and those that were, which fade.
+        # The reflections: the new ones, and the previous ones, which fade out.
         ("distance", np.float64),
         ("pan", np.float64),
         ("size", np.float64),
         ("decay", np.float64),
         ("damping", np.float64),
         ("now", np.int64),
-        ("moved", np.float64),  # from those that were (0) to those of now (1)
-        ("move_step", np.float64),
+        ("crossfade", np.float64),  # from the previous ones (0) to the new ones (1)
+        ("crossfade_step", np.float64),
         ("delay", np.int64, (2, EARS, WALLS)),  # frames
         ("gain", np.float64, (2, EARS, WALLS)),
         ("seconds", np.float64, (EARS, WALLS)),
@@ -43,11 +43,11 @@ SEAT = np.dtype(
         ("b_0", np.float64, 1),  # what a wall takes
         ("b_1", np.float64, 1),
         ("a_1", np.float64, 1),
-        ("before", np.float64),
-        ("filtered", np.float64),
+        ("x_1", np.float64),
+        ("y_1", np.float64),
         ("early", np.float64, EARS),  # what is reflected
         ("silent", np.int64),  # frames since there was sound
-        ("kept", np.float64, SPAN),
+        ("history", np.float64, HISTORY_FRAMES),
     ],
     align=True,
 )
@@ -62,17 +62,17 @@ def prepare_seat(seat: Any, rate: float, body: int = 0) -> None:
         Which of many bodies sounds there: see ``directivity``.
     """
     seat["rate"] = rate
-    seat["move_step"] = 1.0 / (MOVE_S * rate)
+    seat["crossfade_step"] = 1.0 / (CROSSFADE_S * rate)
     prepare_sides(seat["sides"], rate, body)
     seat["direct"], seat["send"], seat["size"] = np.nan, 1.0, 0.0
-    seat["moved"] = 1.0
-    rest_seat(seat)
+    seat["crossfade"] = 1.0
+    clear_seat(seat)
 
 
-def rest_seat(seat: Any) -> None:
+def clear_seat(seat: Any) -> None:
     """Take all sound out of a record of dtype SEAT, in place."""
-    rest_sides(seat["sides"])
-    for name in ("before", "filtered", "early", "kept"):
+    clear_sides(seat["sides"])
+    for name in ("x_1", "y_1", "early", "history"):
         seat[name] = 0.0
     seat["mute"], seat["silent"] = 0, 0
 
@@ -87,7 +87,7 @@ def pan_to(ear: int, pan: float) -> float:
 def set_direct(s: Any, distance: float, pan: float, frames: int) -> None:
     """Move the direct sound to a distance (m) and direction within some frames, from now."""
     for ear in range(EARS):
-        requested = pan_to(ear, pan) * REFERENCE / distance
+        requested = pan_to(ear, pan) * REFERENCE_DISTANCE_M / distance
         s.send[ear] = pan_to(ear, pan)
         if math.isnan(s.direct[ear]):
             s.direct[ear] = requested
@@ -100,9 +100,9 @@ def set_reflections(
 ) -> None:
     """Move the reflections to where they are in a room of a size (m) and decay (s).
 
-    Those that were fade while those of now come. Real time: safe.
+    The previous reflections fade out while the new ones fade in. Real time: safe.
     """
-    if s.moved < 1.0:
+    if s.crossfade < 1.0:
         return
     if (
         size == s.size
@@ -112,30 +112,30 @@ def set_reflections(
         and pan == s.pan
     ):
         return
-    s.moved = 1.0 if s.size == 0.0 else 0.0
+    s.crossfade = 1.0 if s.size == 0.0 else 0.0
     s.size, s.decay, s.damping, s.distance, s.pan = size, decay, damping, distance, pan
     s.now = 1 - s.now
     image_sources.find_images(size, distance, pan, decay, s.seconds, s.gain[s.now])
     for ear in range(EARS):
         for wall in range(WALLS):
             frames = int(math.floor(s.seconds[ear, wall] * s.rate + 0.5))  # noqa: RUF046 - a float, compiled
-            s.delay[s.now, ear, wall] = min(frames, SPAN - 1)
-    way = image_sources.mean_free_path(size) / image_sources.SOUND
-    absorption.set_shelf(s, 0, way, decay, damping)
-    low = s.b_0[0] + s.b_1[0]  # of which the gains know: the shelf keeps its shape only
+            s.delay[s.now, ear, wall] = min(frames, HISTORY_FRAMES - 1)
+    path_s = image_sources.mean_free_path(size) / image_sources.SPEED_OF_SOUND
+    absorption.set_shelf(s, 0, path_s, decay, damping)
+    low = s.b_0[0] + s.b_1[0]  # already in the gains, so the shelf has unity gain there
     low /= 1.0 + s.a_1[0]
     s.b_0[0] /= low
     s.b_1[0] /= low
 
 
 @compiled_exactly
-def is_silent(s: Any, x: float) -> bool:
-    """Take note of a sample; whether neither it nor any other is heard, now or later.
+def update_silence(s: Any, x: float) -> bool:
+    """Count silent samples; return whether nothing of this one or of earlier ones is left.
 
-    Of SPAN zeros nothing is left, in filters or among what is kept. Real time: safe.
+    After HISTORY_FRAMES zeros filters and history are empty. Real time: safe.
     """
     s.silent = s.silent + 1 if x == 0.0 else 0
-    return bool(s.silent > SPAN and s.mute == 0 and s.moved >= 1.0)
+    return bool(s.silent > HISTORY_FRAMES and s.mute == 0 and s.crossfade >= 1.0)
 
 
 @compiled_exactly
@@ -148,53 +148,53 @@ def reflect(s: Any, frame: int, x: float) -> None:
         s.mute += 1
         if s.mute == 0:
             mute(s)
-    y = s.b_0[0] * x + s.b_1[0] * s.before - s.a_1[0] * s.filtered
-    s.before, s.filtered = x, y
-    s.kept[frame & (SPAN - 1)] = y
+    y = s.b_0[0] * x + s.b_1[0] * s.x_1 - s.a_1[0] * s.y_1
+    s.x_1, s.y_1 = x, y
+    s.history[frame & (HISTORY_FRAMES - 1)] = y
     if s.mute > 0:
         s.mute -= 1
         s.early[LEFT], s.early[RIGHT] = 0.0, 0.0
         return
-    add_reflections(s, frame, s.now, min(1.0, s.moved), 0.0)
-    if s.moved < 1.0:
-        add_reflections(s, frame, 1 - s.now, 1.0 - s.moved, 1.0)
-        s.moved += s.move_step
+    add_reflections(s, frame, s.now, min(1.0, s.crossfade), 0.0)
+    if s.crossfade < 1.0:
+        add_reflections(s, frame, 1 - s.now, 1.0 - s.crossfade, 1.0)
+        s.crossfade += s.crossfade_step
 
 
 @compiled_exactly
 def add_reflections(s: Any, frame: int, which: int, amplitude: float, add: float) -> None:
-    """Hear one of the two sets of reflections, and add it to what was heard, or not (0)."""
+    """Compute one of the two sets of reflections; add it to ``early``, or replace that (0)."""
     for ear in range(EARS):
-        heard = 0.0
+        output = 0.0
         for wall in range(WALLS):
-            sample = s.kept[(frame - s.delay[which, ear, wall]) & (SPAN - 1)]
-            heard += s.gain[which, ear, wall] * sample
-        s.early[ear] = add * s.early[ear] + amplitude * heard
+            sample = s.history[(frame - s.delay[which, ear, wall]) & (HISTORY_FRAMES - 1)]
+            output += s.gain[which, ear, wall] * sample
+        s.early[ear] = add * s.early[ear] + amplitude * output
 
 
 @compiled_exactly
-def mute_when_closed(s: Any) -> None:
-    """Let nothing that was kept be reflected once the room has closed. Real time: safe."""
+def mute_after_fade_out(s: Any) -> None:
+    """Mute the reflections once they have faded out. Real time: safe."""
     s.mute = -int(CLOSE_S * s.rate) - 2
 
 
 @compiled_exactly
 def mute(s: Any) -> None:
-    """Reflect nothing of what was kept."""
+    """Reflect nothing of the history."""
     longest = 0
     for which in range(2):
         for ear in range(EARS):
             for wall in range(WALLS):
                 longest = max(longest, s.delay[which, ear, wall])
     s.mute = longest
-    s.before, s.filtered = 0.0, 0.0
+    s.x_1, s.y_1 = 0.0, 0.0
 
 
 @compiled_exactly
 def reset_state(s: Any) -> None:
     """Reset the seat to its start state after an invalid sample. Real time: safe."""
-    s.mute, s.silent = SPAN, 0
-    s.before, s.filtered, s.size, s.moved = 0.0, 0.0, 0.0, 1.0
+    s.mute, s.silent = HISTORY_FRAMES, 0
+    s.x_1, s.y_1, s.size, s.crossfade = 0.0, 0.0, 0.0, 1.0
     for ear in range(EARS):
         s.early[ear], s.direct[ear] = 0.0, math.nan
-    clear_sides(s.sides)
+    reset_sides(s.sides)

@@ -61,7 +61,7 @@ class Stream:
     @property
     def heard(self) -> int | None:
         """Number of frames that an input has received; None of an output."""
-        return None if self._own is None else int(self._own["hearing"]["heard"][0])
+        return None if self._own is None else int(self._own["detector"]["sample_count"][0])
 
     @property
     def latency_ms(self) -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from yehu_server.core.physics.elementary import log2
-from yehu_server.core.voice.note_detection import VOICE, VOICE_KEYS, ends_of
+from yehu_server.core.voice.note_detection import VOICE_CHANNEL, VOICE_KEYS, ends_of
 from yehu_server.live.audio.devices import INPUT
 from yehu_server.live.audio.output import OutputOptions, SharedMemory
 from yehu_server.playing.options import AS_IT_SINGS, PlayingOptions
@@ -35,7 +35,7 @@ def tuned_as(playing: PlayingOptions) -> dict[str, Any]:
     a4 = playing.a4
     pitches = [playing.tuning.pitch(key, a4) for key in KEYS]
     return {
-        "sharper": 12.0 * log2(STANDARD_A4 / a4),
+        "a4_offset": 12.0 * log2(STANDARD_A4 / a4),
         "tuning": [math.nan if pitch is None else pitch for pitch in pitches],
     }
 
@@ -109,7 +109,7 @@ class VoiceInput(Supervisor):
         """End the note that the input has begun."""
         player, name = self._player, self._name
         self._child, self._name = None, ""
-        keys = [Key(VOICE, key) for key in VOICE_KEYS]
+        keys = [Key(VOICE_CHANNEL, key) for key in VOICE_KEYS]
         player.end_keys(keys, frame=player.frame_of())
         if by_itself and name:
             self._on_message(f"{name} is gone; it is followed again once it is back")

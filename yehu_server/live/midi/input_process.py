@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from yehu_server.core.midi.packing import MOST_BYTES
+from yehu_server.core.midi.packing import MAX_BYTES
 from yehu_server.errors import ParameterError
 from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
 from yehu_server.live.midi.jack_watch import JackWatch
@@ -59,7 +59,7 @@ class Input:
         self.heard_s = 1e-9 * at
         if data[0] == ACTIVE_SENSING:
             self._senses = True
-        elif data[0] not in CLOCKS and len(data) <= MOST_BYTES:  # no system exclusive
+        elif data[0] not in CLOCKS and len(data) <= MAX_BYTES:  # no system exclusive
             self._feed.receive(self.name, data, at)
             if self.is_forwarded:
                 self._parent.send("midi", port=self.name, bytes=list(data))

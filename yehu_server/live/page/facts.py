@@ -14,7 +14,7 @@ from yehu_server.ahead.build_hash import build_hash
 from yehu_server.ahead.interpreter import interpreter_layout, snapshot_layout, snapshot_length
 from yehu_server.core.midi import registered_parameters, tables
 from yehu_server.core.midi.events import EVENTS
-from yehu_server.core.midi.tables import MOST_BINDS, TABLES
+from yehu_server.core.midi.tables import MAX_BINDS, TABLES
 from yehu_server.core.player import fingering
 from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.note_range import YEHU, NoteRange
@@ -69,7 +69,7 @@ def camel(name: str) -> str:
 # mapping, and for what is of named controls: nothing moves those of a page.
 FOUND = {"first", "target", "same", "input_lo", "input_hi"}
 OF_BIND = [
-    name for name in TABLES.names or () if TABLES[name].shape == (MOST_BINDS,) and name not in FOUND
+    name for name in TABLES.names or () if TABLES[name].shape == (MAX_BINDS,) and name not in FOUND
 ]
 
 

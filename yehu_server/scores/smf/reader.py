@@ -20,7 +20,7 @@ from pathlib import Path
 
 import mido
 
-from yehu_server.core.midi.channels import PERCUSSION
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import (
     COMMON_TIME,
@@ -82,7 +82,7 @@ def _held(messages: Sequence[Placed]) -> list[Placed]:
             held[message.channel].pop(message.note, None)
         elif kind == "control_change" and message.control in ENDS_ALL:
             held[message.channel].clear()
-    held.pop(PERCUSSION, None)  # whose notes end by themselves
+    held.pop(PERCUSSION_CHANNEL, None)  # whose notes end by themselves
     return [placed for notes in held.values() for placed in notes.values()]
 
 
@@ -189,7 +189,7 @@ def _play_together(
     places = {
         (event.track, event.message.channel)
         for event in events
-        if event.message.type == "note_on" and event.message.channel != PERCUSSION
+        if event.message.type == "note_on" and event.message.channel != PERCUSSION_CHANNEL
     }
     names = {number: track.name for number, track in enumerate(tracks, start=first)}
     parts = _parts(places, names)

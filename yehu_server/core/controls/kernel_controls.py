@@ -6,13 +6,13 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled, compiled_exactly
-from yehu_server.core.controls.ramps import one_pole, take
+from yehu_server.core.controls.ramps import one_pole, start_ramp
 from yehu_server.core.controls.record import (
     CENTS_DRIFT,
-    DRIFTS,
+    DRIFT_COUNT,
     FORCE_DRIFT,
     FORWARD,
-    PLACE_DRIFT,
+    POSITION_DRIFT,
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
@@ -55,20 +55,22 @@ Array = Any
 
 # A lifted finger waits near the loop, where the strings hardly move: over the middle of a string
 # that swings wide it would be hit. By ear.
-PARK_X = 0.012  # m
+PARK_X_M = 0.012
 # A fast bow needs a larger share of Schelleng's limit, or notes jump to the octave. Measured from
 # F4 to F6: the least share that holds is 0.35 at 0.12 m/s, 0.5 at 0.2 m/s, 0.75 at 0.3 m/s.
-FAST_SHARE, FAST = 0.6, 0.35  # m/s
-MEETS_AT = 0.5  # of its speed, at which a bow meets the other string; tried at 0 to 1
-ONSET_FROM = 0.4  # of /vibrato/onset, below which there is no vibrato
+EXTRA_SHARE, EXTRA_SHARE_SPEED = 0.6, 0.35  # m/s
+# A bow meets the other string with this fraction of its speed; tried at 0 to 1.
+CROSSING_SPEED_FRACTION = 0.5
+MIN_ONSET = 0.4  # of /vibrato/onset, below which there is no vibrato
 # In tremolo the bow's speed is a sine times this, clipped to -1..1: mostly full speed. The deeper
 # a tremolo is, the nearer its speed is to a sine squared.
-TURN = 3.0
+TREMOLO_CLIP = 3.0
 LAST_STROKES = 12.0  # strokes a second that bring the bow back to its direction when tremolo ends
-ARRIVED = 1e-6  # m; as near as this to where the sounding length ends, the bow's place is there
-# A contact that moves costs more than one that stands, so places drift every so many samples, by
-# steps of some thousandths of a cent.
-PLACES_EVERY = 16
+# The bow stops following the sounding length this near to where it ends.
+ARRIVED_WITHIN_M = 1e-6
+# A contact that moves costs more than one that stands, so positions drift only once in so many
+# samples, by steps of some thousandths of a cent.
+POSITION_UPDATE_FRAMES = 16
 PER_CENT = log(2.0) / 1200.0
 
 
@@ -77,12 +79,12 @@ def advance_drifts(c: Any) -> None:
     """Advance what drifts by one sample; the player sets the slopes (``player.drift``)."""
     if c.drifting == 0:
         return
-    for i in range(DRIFTS):
+    for i in range(DRIFT_COUNT):
         c.drift[i] += c.drift_slope[i]
-    if c.frame % PLACES_EVERY == 0:
+    if c.frame % POSITION_UPDATE_FRAMES == 0:
         raised = c.drift[CENTS_DRIFT] * PER_CENT
         c.sounding_drift = 1.0 - raised + 0.5 * raised * raised
-        c.place_drift = 1.0 + c.drift[PLACE_DRIFT]
+        c.position_drift = 1.0 + c.drift[POSITION_DRIFT]
 
 
 @compiled
@@ -91,11 +93,11 @@ def vibrato_at(c: Any, phase: float) -> float:
 
     It swings by 1 to either side of /vibrato/upward.
     """
-    if c.value[ONSET] <= ONSET_FROM:
+    if c.value[ONSET] <= MIN_ONSET:
         return 0.0
-    come = (c.value[ONSET] - ONSET_FROM) / (1.0 - ONSET_FROM)
+    fade_in = (c.value[ONSET] - MIN_ONSET) / (1.0 - MIN_ONSET)
     value = sin(2.0 * math.pi * phase) + c.value[UPWARD]
-    return float(come * come * (3.0 - 2.0 * come) * value)
+    return float(fade_in * fade_in * (3.0 - 2.0 * fade_in) * value)
 
 
 @compiled_exactly
@@ -104,7 +106,7 @@ def advance_vibrato(c: Any) -> None:
     if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
         c.vibrato = 0.0
         return
-    c.vibrato += c.vibrato_pace * c.value[RATE] / c.second
+    c.vibrato += c.vibrato_rate_factor * c.value[RATE] / c.rate
     c.vibrato -= math.floor(c.vibrato)
 
 
@@ -117,7 +119,7 @@ def advance_tremolo(c: Any) -> None:
             return
         strokes = LAST_STROKES
     before = c.tremolo
-    c.tremolo += 0.5 * strokes / c.second
+    c.tremolo += 0.5 * strokes / c.rate
     if c.value[TREMOLO] == 0.0 and before < FORWARD <= c.tremolo:
         c.tremolo = FORWARD
     c.tremolo -= math.floor(c.tremolo)
@@ -138,21 +140,21 @@ def vibrate(c: Any) -> float:
     advance_vibrato(c)
     if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
         return 0.0
-    return float(c.vibrato_width * vibrato_at(c, c.vibrato))
+    return float(c.vibrato_depth_factor * vibrato_at(c, c.vibrato))
 
 
 @compiled
-def turn_bow(c: Any) -> float:
+def next_tremolo_factor(c: Any) -> float:
     """Advance the tremolo by one sample; factor of the bow's speed, -1 to 1."""
     advance_tremolo(c)
-    return 1.0 if c.value[TREMOLO] == 0.0 and c.tremolo == FORWARD else turned(c)
+    return 1.0 if c.value[TREMOLO] == 0.0 and c.tremolo == FORWARD else tremolo_factor(c)
 
 
 @compiled
-def turned(c: Any) -> float:
+def tremolo_factor(c: Any) -> float:
     """Factor of the bow's speed at this phase of the tremolo, -1 to 1."""
     swing, depth = sin(2.0 * math.pi * c.tremolo), c.value[TREMOLO_DEPTH]
-    quick = max(-1.0, min(1.0, TURN * swing))
+    quick = max(-1.0, min(1.0, TREMOLO_CLIP * swing))
     return float((1.0 - depth) * quick + depth * swing * abs(swing))
 
 
@@ -183,11 +185,11 @@ def stop_strings(c: Any, control: Array) -> float:
         else:
             c.finger_up[j] += 1
             if c.finger_up[j] >= c.park_after:
-                x_f = PARK_X
+                x_f = PARK_X_M
         control[column], control[column + 1] = x_f, press
     if c.sounding_from != stop:  # a bow that comes to rest costs less than one that never does
         c.sounding_from = one_pole(c.sounding_from, stop, c.follow)
-        if abs(c.sounding_from - stop) < ARRIVED:
+        if abs(c.sounding_from - stop) < ARRIVED_WITHIN_M:
             c.sounding_from = stop
     return stop
 
@@ -197,7 +199,7 @@ def pluck(c: Any) -> float:
     """Force (N) of the pluck at this sample; it is released once its ramp has ended."""
     force = c.value[PLUCK]
     if force != 0.0 and c.remaining[PLUCK] == 0:
-        take(c, PLUCK, 0.0, c.let_go)
+        start_ramp(c, PLUCK, 0.0, c.let_go)
     return float(force)
 
 
@@ -210,7 +212,7 @@ def bow_force(c: Any, string: int, speed: float) -> float:
     """
     limit = c.schelleng[string] * abs(speed) / c.value[POSITION]
     assist = c.value[ASSIST]
-    share = c.value[SHARE] + FAST_SHARE * min(1.0, (speed / FAST) ** 2)
+    share = c.value[SHARE] + EXTRA_SHARE * min(1.0, (speed / EXTRA_SHARE_SPEED) ** 2)
     return float(assist * share * limit + (1.0 - assist) * c.value[FORCE])
 
 
@@ -224,11 +226,11 @@ def is_still(c: Any) -> bool:
         return False
     if c.value[SPEED] != 0.0 or c.value[SIDE] != 0.0 or c.value[PLUCK] != 0.0:
         return False
-    shakes = c.value[DEPTH] != 0.0 or c.value[VIBRATO_PRESS] != 0.0
-    shakes = shakes and c.value[ONSET] > ONSET_FROM
+    is_vibrating = c.value[DEPTH] != 0.0 or c.value[VIBRATO_PRESS] != 0.0
+    is_vibrating = is_vibrating and c.value[ONSET] > MIN_ONSET
     for j in range(MAX_FINGERS):
         if c.value[FINGER_PRESS[j]] > 0.0:
-            if shakes:
+            if is_vibrating:
                 return False
         elif c.finger_up[j] < c.park_after:
             return False
@@ -248,8 +250,8 @@ def cross_strings(c: Any, speed: float, side: float) -> tuple[float, float, floa
     -------
     speed : float
         Of the bow (m/s).
-    pressing : float
-        The speed that the bow's force is that of (m/s).
+    force_speed : float
+        The speed from which the bow's force is computed (m/s).
     weight : float
         Share of that force on the string, by its sign the inner (positive) or the outer one.
     """
@@ -260,9 +262,9 @@ def cross_strings(c: Any, speed: float, side: float) -> tuple[float, float, floa
         speed = c.speed_before * max(0.0, 2.0 * left - 1.0)
         return speed, c.speed_before, side * left * (2.0 - left)
     if side * c.side_before < 0.0:
-        c.value[SPEED] = MEETS_AT * c.target[SPEED]
-        take(c, SPEED, c.target[SPEED], c.remaining[SPEED])
-        take(c, SIDE, c.target[SIDE], c.remaining[SIDE] // 2)
+        c.value[SPEED] = CROSSING_SPEED_FRACTION * c.target[SPEED]
+        start_ramp(c, SPEED, c.target[SPEED], c.remaining[SPEED])
+        start_ramp(c, SIDE, c.target[SIDE], c.remaining[SIDE] // 2)
     c.side_before, c.speed_before = side, speed
     return speed, speed, side
 
@@ -278,19 +280,19 @@ def write_controls(c: Any, control: Array) -> None:
     """
     advance_drifts(c)
     stop = stop_strings(c, control)
-    speed, side = c.value[SPEED] * turn_bow(c), c.value[SIDE]
-    speed, pressing, weight = cross_strings(c, speed, side)
+    speed, side = c.value[SPEED] * next_tremolo_factor(c), c.value[SIDE]
+    speed, force_speed, weight = cross_strings(c, speed, side)
     beta, firmness = c.value[POSITION], 1.0
     if c.drifting != 0:
         speed *= 1.0 + c.drift[SPEED_DRIFT]
-        pressing *= 1.0 + c.drift[SPEED_DRIFT]
-        beta *= c.place_drift
+        force_speed *= 1.0 + c.drift[SPEED_DRIFT]
+        beta *= c.position_drift
         firmness += c.drift[FORCE_DRIFT]
     string = 0 if side >= 0.0 else 1
     sounding = c.bridge_x - c.sounding_from
-    control[F_N] = weight * bow_force(c, string, pressing) * firmness
-    c.place += speed / c.second
-    control[Y_B], control[TEXTURE] = c.place, c.value[NOISE]
+    control[F_N] = weight * bow_force(c, string, force_speed) * firmness
+    c.bow_displacement += speed / c.rate
+    control[Y_B], control[TEXTURE] = c.bow_displacement, c.value[NOISE]
     control[V_B] = speed
     control[X_B] = c.bridge_x - beta * sounding
     control[F_HAMMER] = 0.0

@@ -179,16 +179,16 @@ export function notesAndGestures({ values, commands, ...rest }, isServers) {
   const isFree = ({ isOwners }) => !(isServers && isOwners);
   const played = {
     ...rest,
-    values: Object.fromEntries(
-      Object.entries(values).filter(([address]) => isFree(find(address))),
-    ),
+    values: Object.fromEntries(Object.entries(values).filter(([address]) => isFree(find(address)))),
     commands: commands.filter(
       ({ kind, index }) =>
         kind !== HOLD && kind !== RAMP && (!OF_PARAMETERS.includes(kind) || isFree(TABLE[index])),
     ),
   };
   // A value that it has by itself brings nothing.
-  const brought = Object.keys(values).filter((address) => values[address] !== find(address).default);
+  const brought = Object.keys(values).filter(
+    (address) => values[address] !== find(address).default,
+  );
   const kept = brought.filter((address) => address in played.values);
   const leftOut = commands.length - played.commands.length + brought.length - kept.length;
   return { played, leftOut };

@@ -54,7 +54,7 @@ HERE = Path(__file__).resolve().parent
 ENVIRONMENT = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
 HEADER_BYTES = 8
 PID_BYTES = 4
-MOST_FILES = 64
+MAX_FILES = 64
 PR_SET_CHILD_SUBREAPER = 36
 
 _asking = threading.Lock()
@@ -205,7 +205,7 @@ def _be_prepared(link: socket.socket) -> str:
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for pytest
     while True:
-        header, files, *_ = socket.recv_fds(link, HEADER_BYTES, MOST_FILES)
+        header, files, *_ = socket.recv_fds(link, HEADER_BYTES, MAX_FILES)
         if not header:
             sys.exit()
         request = json.loads(_received(link, int.from_bytes(header, "big")))

@@ -6,7 +6,7 @@ from yehu_server import cli
 from yehu_server.cli.config import parse
 from yehu_server.cli.part_options import MAX
 from yehu_server.cli.serve_options import options_of
-from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.live.midi.routes import Route
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.stringing import notes_of
@@ -18,7 +18,7 @@ def served(*words: str):
 
 
 def test_there_are_as_many_parts_as_a_stage_has_room_for():
-    assert MAX == MOST_PARTS
+    assert MAX == MAX_PARTS
     assert len(served("--parts", "16").parts) == 16
 
 

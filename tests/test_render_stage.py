@@ -14,7 +14,7 @@ from sound import rms
 from yehu_server.playing.pitch_and_level import a_weighted_db
 
 RATE = 44100
-MOST_CHANGE_DB = 1.0  # of the loudness, by the usual room
+MAX_CHANGE_DB = 1.0  # of the loudness, by the usual room
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_the_usual_room_leaves_the_loudness_as_it_is(play, tune):
         np.mean([a_weighted_db(side[: int(1.4 * RATE)], RATE) for side in sound.T])
         for sound in (play(tune), play(tune, "--dry"))
     ]
-    assert abs(loudness[0] - loudness[1]) < MOST_CHANGE_DB
+    assert abs(loudness[0] - loudness[1]) < MAX_CHANGE_DB
 
 
 def test_one_player_has_stems_too(command, tune, tmp_path):

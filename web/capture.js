@@ -10,9 +10,9 @@ import { COMMAND } from "./sound/kernel.js";
 const FORMAT = "yehu-server capture";
 const VERSIONS = [2, 3]; // the former has one player, and no numbers of players
 const OWN = 1; // the player of this page, and of a file the one that is played
-const MOST_BYTES = 64 << 20;
-const MOST_COMMANDS = 1e6;
-const MOST_A_SECOND = 5000; // commands: two hands come to some hundreds
+const MAX_BYTES = 64 << 20;
+const MAX_COMMANDS = 1e6;
+const MAX_A_SECOND = 5000; // commands: two hands come to some hundreds
 const LONGEST_S = 24 * 3600;
 const EVERY = 60; // ms
 const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW, RELEASE } = facts.kinds;
@@ -116,7 +116,7 @@ function lineOf(command) {
  * @returns {Promise<Performance>}
  */
 export async function readCapture(file) {
-  if (file.size > MOST_BYTES) throw new RangeError("too large");
+  if (file.size > MAX_BYTES) throw new RangeError("too large");
   const [head, ...lines] = (await file.text()).split("\n").filter((line) => line !== "");
   const { format, version, rate, ...begun } = JSON.parse(head);
   if (format !== FORMAT || !VERSIONS.includes(version) || !(rate >= 8000 && rate <= 384000)) {
@@ -151,7 +151,7 @@ export async function readCapture(file) {
  */
 export function checked(performance) {
   const { rate, values, commands } = performance;
-  if (commands.length > MOST_COMMANDS) throw new RangeError("too many commands");
+  if (commands.length > MAX_COMMANDS) throw new RangeError("too many commands");
   Object.values(values).forEach(finite);
   let before = 0;
   commands.forEach(({ frame, value, other }, at) => {
@@ -159,7 +159,7 @@ export function checked(performance) {
     before = frame;
     finite(value);
     finite(other);
-    const earlier = commands[at - MOST_A_SECOND];
+    const earlier = commands[at - MAX_A_SECOND];
     if (earlier && frame - earlier.frame < rate)
       throw new RangeError("too many commands at a time");
   });

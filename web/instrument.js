@@ -11,7 +11,7 @@ import { MAPPINGS } from "./playing/learned.js";
 import { Player } from "./playing/player.js";
 
 /** Commands before the sound is open wait for it; more than these are of no use to anybody. */
-const MOST_WAITING = 1000;
+const MAX_WAITING = 1000;
 const PREPARING = 503;
 const AHEAD_S = 0.25;
 const AHEAD_HIDDEN_S = 1.5;
@@ -107,7 +107,7 @@ export class Instrument extends EventTarget {
   /** @type {Post} */
   post(frame, kind, index, value, other) {
     if (this.sound) this.sound.post(frame, kind, index, value, other);
-    else if (this.waiting.length < MOST_WAITING)
+    else if (this.waiting.length < MAX_WAITING)
       this.waiting.push([null, kind, index, value, other]);
     this.dispatchEvent(
       new CustomEvent("command", {

@@ -11,7 +11,7 @@ const RATE = 1000; // frames of a link are ms
 const FINE = 1e4; // values are kept to the tenth of a thousandth
 const BASE = 128; // of numbers of many bytes
 const MOST = 24_000; // characters that browsers and letters pass on
-const MOST_BYTES = 4 << 20; // unpacked
+const MAX_BYTES = 4 << 20; // unpacked
 
 /**
  * The link that plays a performance on this page; null where it is too long for one.
@@ -49,7 +49,7 @@ async function through(stream, bytes) {
   // By parts: a short link may claim to be gigabytes.
   for await (const part of new Blob([bytes]).stream().pipeThrough(stream)) {
     size += part.length;
-    if (size > MOST_BYTES) throw new RangeError("too large");
+    if (size > MAX_BYTES) throw new RangeError("too large");
     parts.push(part);
   }
   return new Uint8Array(await new Blob(parts).arrayBuffer());

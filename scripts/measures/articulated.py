@@ -19,7 +19,7 @@ VELOCITIES = (40, 80, 120)
 REST_S, BEGIN_S = 0.15, 0.05
 # A note is wrong that is off its pitches for more of its loud time (%), or softer by so much (dB)
 # than the median of those played alike.
-MOST_OFF, SOFT_DB = 8.0, 8.0
+MAX_OFF, SOFT_DB = 8.0, 8.0
 
 HERE = (0.0, 0.0)
 Range = tuple[float, float, float]  # lowest, highest, and the shortest notes (s) that it holds for
@@ -151,10 +151,10 @@ def judged(way: Way, notes: tuple[int, ...], rows: list[Figures]) -> Found:
     median = {name: _median(values) for name, values in columns.items()}
     wrong = [
         f"{note} off {off:.0f} %"
-        if off > MOST_OFF
+        if off > MAX_OFF
         else f"{note} soft {level - median['level']:.0f} dB"
         for note, off, level in zip(notes, columns["off"], columns["level"], strict=True)
-        if off > MOST_OFF or level < median["level"] - SOFT_DB
+        if off > MAX_OFF or level < median["level"] - SOFT_DB
     ]
     missed = [
         f"{name} {median[name]:.3g} not {low:g} to {high:g}"

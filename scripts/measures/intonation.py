@@ -25,8 +25,8 @@ CLOSE_CENTS, FAIR_CENTS, OPEN_CENTS = 5.0, 10.0, 12.0
 NONE = 9999.0
 REACH_CENTS, STEP_CENTS = 150.0, 1.0
 HIGHEST_HZ, MOST = 6000.0, 12  # of the harmonics that count
-LEAST_OWN = 0.03  # share of the power that the harmonics must have
-LEAST_ODD = 0.01  # share of theirs, of those that a higher register lacks
+MIN_OWN = 0.03  # share of the power that the harmonics must have
+MIN_ODD = 0.01  # share of theirs, of those that a higher register lacks
 
 
 def off_by(sound: Sound, rate: float, start_s: float, seconds: float, pitch: float) -> float:
@@ -115,9 +115,9 @@ def overtones_off_by(
     own = amplitudes[best] ** 2 * (1.5 * size / len(part))
     frequencies = np.arange(len(spectrum)) * rate / size
     within = (frequencies > 0.5 * wanted) & (frequencies < HIGHEST_HZ)
-    if own.sum() < LEAST_OWN * (spectrum[within] ** 2).sum():
+    if own.sum() < MIN_OWN * (spectrum[within] ** 2).sum():
         return NONE
-    if any(own[orders % n != 0].sum() < LEAST_ODD * own.sum() for n in (2, 3)):
+    if any(own[orders % n != 0].sum() < MIN_ODD * own.sum() for n in (2, 3)):
         return NONE
     left, here, right = sums[best - 1 : best + 2]
     return float(shifts[best] + STEP_CENTS * 0.5 * (left - right) / (left - 2.0 * here + right))

@@ -16,7 +16,7 @@ Array = Any
 VELOCITIES = (40, 80, 120)
 FROM_S, END_S = 0.7, 3.0  # of the steady part; on an endless bow
 WINDOW_S, HOP_S, APART_S = 0.02, 0.005, 0.002
-MOST_HZ, MOST_HARMONICS = 6000.0, 12
+MAX_HZ, MAX_HARMONICS = 6000.0, 12
 BAND_HZ = (100.0, 10_000.0)
 SPECTRUM_S, HALF_WIDTH_HZ = 0.1, 60.0  # of a spectrum, and of a harmonic in it
 # What counts as alive: cents in 20 ms, per cent from period to period, dB.
@@ -34,7 +34,7 @@ def pitch_track(sound: Array, rate: float, frequency: float) -> Array:
     apart, hop = round(APART_S * rate), round(HOP_S * rate)
     time = np.arange(len(sound)) / rate
     total, weights = 0.0, 0.0
-    for k in range(1, min(MOST_HARMONICS, int(MOST_HZ / frequency)) + 1):
+    for k in range(1, min(MAX_HARMONICS, int(MAX_HZ / frequency)) + 1):
         turned = sound * np.exp(-2j * np.pi * k * frequency * time)
         mean = fftconvolve(turned, window, "valid")
         angle = np.angle(mean[apart:] * np.conj(mean[:-apart]))[::hop]

@@ -19,7 +19,7 @@ DYNAMICS = ((None, 80), (0, 80), (64, 110), (127, 127))  # wheel and velocity
 EVEN_DB = 2.0
 STRUCK = (1, 20, 50, 80, 110, 127)
 SOFT, MEDIUM, HARD = STRUCK.index(20), STRUCK.index(80), STRUCK.index(127)
-LEAST_RISE_DB, MOST_RISE_DB, LEAST_ABOVE_DB = 16.0, 24.0, 3.0
+MIN_RISE_DB, MAX_RISE_DB, MIN_ABOVE_DB = 16.0, 24.0, 3.0
 BRIGHTER = 1.25  # the centroid of a hard note, as a factor on that of a soft one
 LIMITER = 10.0 ** (find("/output/limiter").default / 20.0)  # amplitude above which it acts
 
@@ -86,7 +86,7 @@ def _rises(note: int, row: list[Timbre]) -> bool:
     """Print a note from soft to loud; return whether its level rises as it should."""
     levels = [each.level_db for each in row]
     rise, above = levels[-1] - levels[0], levels[HARD] - levels[MEDIUM]
-    is_right = LEAST_RISE_DB <= rise <= MOST_RISE_DB and above >= LEAST_ABOVE_DB
+    is_right = MIN_RISE_DB <= rise <= MAX_RISE_DB and above >= MIN_ABOVE_DB
     limited = [str(v) for v, each in zip(STRUCK, row, strict=True) if each.peak > LIMITER]
     print(
         f"{note}: {' '.join(f'{level:6.1f}' for level in levels)} dB; "

@@ -23,7 +23,7 @@ TUNES = Path(__file__).parents[2] / "examples" / "tunes"
 PHRASINGS = (0.0, 0.5)
 SILENT_DB = 35.0  # below the loudest moment of a tune
 LONG_S, EDGE_S, SCRAPE_S, RISEN = 0.4, 0.1, 0.08, 0.9
-LEAST_DB, MOST_DB = 10.0, 17.0  # over a tune, from the 5th to the 95th of a hundred
+MIN_DB, MAX_DB = 10.0, 17.0  # over a tune, from the 5th to the 95th of a hundred
 
 
 def over_tune(track: Track) -> float:
@@ -95,7 +95,7 @@ def phrases(setup: Setup) -> list[Share]:
             low, middle, high = np.nanquantile(values, (0.1, 0.5, 0.9))
             print(f"    {name}: {low:.1f} / {middle:.1f} / {high:.1f} {unit}", flush=True)
         words = [f"{path.stem} {db:.1f}" for path, db in zip(paths, over, strict=True)]
-        right = [LEAST_DB <= db <= MOST_DB for db in over]
-        name = f"{LEAST_DB:g} to {MOST_DB:g} dB over a tune at phrasing {phrasing:g}"
+        right = [MIN_DB <= db <= MAX_DB for db in over]
+        name = f"{MIN_DB:g} to {MAX_DB:g} dB over a tune at phrasing {phrasing:g}"
         parts.append(share_line(name, right, words, counts=phrasing > 0.0))
     return parts

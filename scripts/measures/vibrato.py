@@ -18,7 +18,7 @@ WAYS = {
     "asked for, 30 cents to either side": {"/playing/vibrato": 30.0},
 }
 # From peak to peak: the least width in recordings of an erhu, a violin and a cello; by ear.
-LEAST_CENTS, MOST_DB = 39.0, 4.0
+MIN_CENTS, MAX_DB = 39.0, 4.0
 OPEN = (65, 72)  # no finger
 
 
@@ -45,7 +45,7 @@ def vibrato(setup: Setup) -> list[Share]:
     parts = []
     for name, settings in WAYS.items():
         found = in_parallel(setup, swings, [(note, settings) for note in notes])
-        right = [cents >= LEAST_CENTS and db <= MOST_DB for cents, db in found]
+        right = [cents >= MIN_CENTS and db <= MAX_DB for cents, db in found]
         words = [
             f"{note} {cents:.0f} cents {db:.1f} dB"
             for note, (cents, db) in zip(notes, found, strict=True)
@@ -53,6 +53,6 @@ def vibrato(setup: Setup) -> list[Share]:
         cents, db = np.median(found, axis=0)
         print(f"{name}: medians {cents:.0f} cents, {db:.1f} dB; {', '.join(words)}")
         parts.append(
-            share_line(f"{LEAST_CENTS:g} cents or more, {MOST_DB:g} dB or less", right, words)
+            share_line(f"{MIN_CENTS:g} cents or more, {MAX_DB:g} dB or less", right, words)
         )
     return parts

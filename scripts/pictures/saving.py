@@ -10,7 +10,7 @@ import numpy as np
 import soundfile
 
 ROOT = Path(__file__).resolve().parents[2]
-MOST_BYTES = 700_000
+MAX_BYTES = 700_000
 
 
 def save(figure: Any, path: Path, dpi: int = 90) -> None:
@@ -26,7 +26,7 @@ def save_sound(path: Path, sound: Any, rate: int) -> None:
     """Write a sound to a FLAC file, and print its length and size."""
     soundfile.write(path, sound, rate, subtype="PCM_16", compression_level=1.0)
     size = path.stat().st_size
-    much = f"; more than {MOST_BYTES // 1000} kB" if size > MOST_BYTES else ""
+    much = f"; more than {MAX_BYTES // 1000} kB" if size > MAX_BYTES else ""
     print(f"{path}: {len(sound) / rate:.1f} s, {size // 1000} kB{much}", flush=True)
 
 

@@ -15,8 +15,8 @@ except ImportError:  # as on Windows: time alone is bounded
     resource = None
 
 STATM = Path("/proc/self/statm")  # only Linux has it
-MOST_CPU_S = 1.0
-MOST_MEMORY_BYTES = 200 * 10**6
+MAX_CPU_S = 1.0
+MAX_MEMORY_BYTES = 200 * 10**6
 
 
 class TooSlowError(BaseException):
@@ -24,7 +24,7 @@ class TooSlowError(BaseException):
 
 
 def _too_slow(_signal: int, _frame: FrameType | None) -> None:
-    raise TooSlowError(f"more than {MOST_CPU_S:g} s of CPU time")
+    raise TooSlowError(f"more than {MAX_CPU_S:g} s of CPU time")
 
 
 @contextlib.contextmanager
@@ -37,9 +37,9 @@ def bounded() -> Iterator[None]:
     if bounds_memory := resource is not None and STATM.exists():
         pages = int(STATM.read_text().split()[0])
         limits = resource.getrlimit(resource.RLIMIT_AS)
-        most = pages * resource.getpagesize() + MOST_MEMORY_BYTES
+        most = pages * resource.getpagesize() + MAX_MEMORY_BYTES
         resource.setrlimit(resource.RLIMIT_AS, (most, limits[1]))
-    signal.setitimer(signal.ITIMER_PROF, MOST_CPU_S)
+    signal.setitimer(signal.ITIMER_PROF, MAX_CPU_S)
     try:
         yield
     finally:

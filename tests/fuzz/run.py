@@ -19,7 +19,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
 
 import atheris
-from fuzz.target import MOST_BYTES, ROOT, TARGETS, Target, scratch
+from fuzz.target import MAX_BYTES, ROOT, TARGETS, Target, scratch
 
 # What numba compiles is not watched.
 COMPILED = [
@@ -43,7 +43,7 @@ def fuzz(target: Target, options: list[str]) -> None:
         (seeds / name).write_bytes(data)
     lines = ("".join(f"\\x{byte:02x}" for byte in word) for word in target.words)
     words.write_text("".join(f'"{line}"\n' for line in lines))
-    usual = [f"-max_len={MOST_BYTES}", "-rss_limit_mb=4096", "-timeout=60", f"-dict={words}"]
+    usual = [f"-max_len={MAX_BYTES}", "-rss_limit_mb=4096", "-timeout=60", f"-dict={words}"]
     corpus = [] if any(Path(option).is_file() for option in options) else [str(seeds)]
     atheris.Setup([target.name, *usual, *options, *corpus], target.check)
     atheris.Fuzz()

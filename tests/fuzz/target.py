@@ -19,7 +19,7 @@ from fuzz.bounds import bounded
 
 ROOT = Path(__file__).parents[2]
 SEEDS = Path(__file__).parent / "seeds"
-MOST_BYTES = 1 << 16  # of an input
+MAX_BYTES = 1 << 16  # of an input
 
 Read = Callable[[bytes], None]
 

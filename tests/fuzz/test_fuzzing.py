@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 
 import pytest
-from fuzz.target import MOST_BYTES, TARGETS, Target
+from fuzz.target import MAX_BYTES, TARGETS, Target
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -25,7 +25,7 @@ def changed(data: bytes, changes: list[tuple[float, int, bytes]]) -> bytes:
     for where, count, piece in changes:
         at = round(where * len(data))
         data = data[:at] + piece + data[at + count :]
-    return data[:MOST_BYTES]
+    return data[:MAX_BYTES]
 
 
 @pytest.mark.slow

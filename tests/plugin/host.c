@@ -44,8 +44,8 @@ static long allocations(void) { return 0; }
 #endif
 
 #define MOST 65536
-#define MOST_BLOCK 16384
-#define MOST_CHANGING 4096
+#define MAX_BLOCK 16384
+#define MAX_CHANGING 4096
 #define PIECE 17    /* bytes of a state that are taken at once: a host may take less than it is given */
 #define UNKNOWN 333 /* a space of events */
 #define TEXTS 50    /* values of a parameter whose texts are tried */
@@ -181,7 +181,7 @@ static void between(const clap_plugin_t *plugin, const struct line *line, double
     }
     if (is_idle || is_rate) {
         *rate = is_rate && line->number[0] > 0.0 ? line->number[0] : *rate;
-        if (!plugin->activate(plugin, *rate, 1, MOST_BLOCK) || !plugin->start_processing(plugin)) exit(5);
+        if (!plugin->activate(plugin, *rate, 1, MAX_BLOCK) || !plugin->start_processing(plugin)) exit(5);
     }
 }
 
@@ -233,12 +233,12 @@ int main(int words, char **word) {
     const double began = seconds(CLOCK_MONOTONIC);
     const clap_plugin_t *plugin = factory->create_plugin(factory, &host, about->id);
     if (!plugin || strcmp(plugin->desc->id, about->id) || !plugin->init(plugin)) return 4;
-    if (!plugin->activate(plugin, rate, 1, MOST_BLOCK) || !plugin->start_processing(plugin)) return 5;
+    if (!plugin->activate(plugin, rate, 1, MAX_BLOCK) || !plugin->start_processing(plugin)) return 5;
     printf("opened %g\n", seconds(CLOCK_MONOTONIC) - began);
     const clap_plugin_latency_t *latency = plugin->get_extension(plugin, CLAP_EXT_LATENCY);
     const clap_plugin_latency_t *tail = plugin->get_extension(plugin, "clap.tail");
     printf("latency %u\ntail %u\n", latency->get(plugin), tail->get(plugin));
-    float *sound = calloc(2 * frames + 1, sizeof *sound), left[MOST_BLOCK + 1], right[MOST_BLOCK + 1];
+    float *sound = calloc(2 * frames + 1, sizeof *sound), left[MAX_BLOCK + 1], right[MAX_BLOCK + 1];
     float *both[2] = {left, right};
     clap_audio_buffer_t out = {both, NULL, 2, 0, 0};
     clap_event_transport_t transport = {{sizeof transport, 0, CLAP_CORE_EVENT_SPACE_ID, CLAP_EVENT_TRANSPORT, 0}, .flags = 0};
@@ -246,7 +246,7 @@ int main(int words, char **word) {
     double took = 0.0, longest = 0.0;
     for (long done = 0, now; done < frames; done += now) {
         changing = changing * 1103515245 + 12345;
-        now = block > 0 ? block : 1 + (changing >> 16 & (MOST_CHANGING - 1));
+        now = block > 0 ? block : 1 + (changing >> 16 & (MAX_CHANGING - 1));
         now = now < frames - done ? now : frames - done;
         for (; last < count && lines[last].frame <= done && !is_event(lines[last].word); last++) {
             if (!strcmp(lines[last].word, "play"))

@@ -16,7 +16,7 @@ from sound import rms, run
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.bowing import default_bowing_table
@@ -329,7 +329,7 @@ def test_a_session_on_a_stage_is_replayed_to_the_bit(tmp_path, seed, players):
 
 
 def test_what_players_have_in_common_is_written_once(tmp_path):
-    of, apart = measured(), range(MOST_PARTS - 2)
+    of, apart = measured(), range(MAX_PARTS - 2)
     players = [InstrumentSpec(RATE, calibration=of, seed=seed, body=seed) for seed in range(3)]
     players += [
         InstrumentSpec(

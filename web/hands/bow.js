@@ -20,7 +20,7 @@ const BELOW = 0.6;
 const ABOVE = 1.4;
 const WIDEST_LEAST = 0.5; // where there is no wedge, forces near the greatest do best
 /** With assist the force follows the speed, but a bow that turns stays on the string. */
-const LEAST_SPEED = 0.03;
+const MIN_SPEED = 0.03;
 /** Schelleng's limit for each m/s until the instrument reports it: 2 Z / (beta (mu_S - mu_C)). */
 const USUAL_LIMIT = 7.3;
 /** The least force as a share of the greatest, until the instrument reports it. */
@@ -65,7 +65,7 @@ export class Bow {
    */
   follow({ bow, schelleng }) {
     const speed = Math.abs(bow.speed);
-    if (speed > LEAST_SPEED && schelleng.max > 0) {
+    if (speed > MIN_SPEED && schelleng.max > 0) {
       this.limit = schelleng.max / speed;
       this.least = schelleng.min / schelleng.max;
     }
@@ -138,7 +138,7 @@ export class Bow {
     const [light, firm] = this.range;
     const amount = light * (firm / light) ** this.height;
     if (!this.hands.isAssisted) return amount;
-    return Math.min(amount * this.limit * Math.max(Math.abs(speed), LEAST_SPEED), 5);
+    return Math.min(amount * this.limit * Math.max(Math.abs(speed), MIN_SPEED), 5);
   }
 
   /**

@@ -13,7 +13,7 @@ const MARGIN = 0.6;
 /** Room for a semitone, px, for a finger and a mouse; where there is less, a part of the board is shown. */
 const [FINGER, MOUSE] = [21, 16];
 const coarse = globalThis.matchMedia?.("(pointer: coarse)");
-const LEAST_SHOWN = 8;
+const MIN_SHOWN = 8;
 
 /** In F, the scale of the open strings, and in B flat these are no sharps. @type {Record<number, string>} */
 const FLAT_NAMES = { 3: "E♭", 10: "B♭" };
@@ -100,7 +100,7 @@ export class Scale {
     const whole = HIGHEST - LOWEST;
     const room = coarse?.matches ? FINGER : MOUSE;
     this.length = Math.max(length, 1);
-    this.span = Math.min(whole, Math.max(LEAST_SHOWN, Math.floor(length / room - 2 * MARGIN)));
+    this.span = Math.min(whole, Math.max(MIN_SHOWN, Math.floor(length / room - 2 * MARGIN)));
     this.first = Math.min(Math.max(lowest, LOWEST), HIGHEST - this.span);
   }
 

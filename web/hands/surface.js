@@ -1,12 +1,12 @@
 /** Where on the stage the instrument's parts are: head, fingerboard, bow and coconut, along its strings. */
 
 const HEAD = 0.06; // of the length, with the pegs
-const LEAST_HEAD = 30; // px
+const MIN_HEAD = 30; // px
 const ROUND = 0.115; // radius of the coconut, of the length
 const WIDEST = 0.4; // and at most of the breadth
 const EDGE = 8; // px beyond it
 const BOW = 0.1; // of the length between fingerboard and coconut
-const LEAST_BOW = 56; // px
+const MIN_BOW = 56; // px
 const OVER = 0.25; // of the radius that the bow may come over the coconut
 /** The bow is somewhere between these distances from the bridge, as shares of the sounding length. */
 const NEAREST = 0.03;
@@ -43,8 +43,8 @@ export class Surface extends EventTarget {
     this.stage.classList.toggle("down", this.isUpright);
     [this.length, this.breadth] = this.isUpright ? [height, width] : [width, height];
     this.round = Math.min(ROUND * this.length, WIDEST * this.breadth);
-    const end = this.centre - this.round - Math.max(BOW * this.length, LEAST_BOW);
-    this.board = [Math.max(HEAD * this.length, LEAST_HEAD), end];
+    const end = this.centre - this.round - Math.max(BOW * this.length, MIN_BOW);
+    this.board = [Math.max(HEAD * this.length, MIN_HEAD), end];
     style.setProperty("--board-from", `${this.board[0]}px`);
     style.setProperty("--board-to", `${end}px`);
     this.dispatchEvent(new Event("change"));

@@ -26,7 +26,7 @@ const COLOURS = /** @type {Colour[]} */ (
 const CALM = 0.4;
 const RESTS_AFTER = 300; // ms without news
 const LONGEST = 0.5; // s that a picture goes on by at once
-const MOST_DOTS = 3; // per px: finer is not seen, and costs
+const MAX_DOTS = 3; // per px: finer is not seen, and costs
 /** A large picture is drawn as one of this size, magnified: it is read from the last row. */
 const LARGE = { width: 640, height: 400, most: 3 };
 
@@ -175,7 +175,7 @@ export class Picture {
     this.isStale = false;
     const { zoom } = this;
     const { clientWidth, clientHeight } = this.canvas;
-    const dots = Math.min(devicePixelRatio || 1, MOST_DOTS);
+    const dots = Math.min(devicePixelRatio || 1, MAX_DOTS);
     this.width = clientWidth / zoom;
     this.height = clientHeight / zoom;
     this.canvas.width = Math.round(clientWidth * dots);

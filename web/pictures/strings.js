@@ -12,10 +12,10 @@ export const STRINGS = /** @type {const} */ (["inner", "outer"]);
 /** Periods a second in the slowed view. */
 const SLOW = 0.4;
 /** A swing that is smaller, in m, is not drawn larger. */
-const LEAST_SWING = 0.15e-3;
+const MIN_SWING = 0.15e-3;
 const USUAL_SWING = 0.6e-3;
 const SWING = 0.15; // of the breadth, for the greatest swing of a note
-const MOST_SWING = 80; // px
+const MAX_SWING = 80; // px
 const TRAIL = 10; // shapes that are still seen, in the view of all
 const QUIET = -55; // dBFS; from here on a string glows
 const LOUD = -15;
@@ -45,7 +45,7 @@ export class Strings {
     if (string >= 0) this.bowed = string;
     const note = string < 0 ? NaN : Math.round(state.pitch);
     if (note !== this.note) {
-      if (this.widest > 0) this.swing = Math.max(this.widest, LEAST_SWING);
+      if (this.widest > 0) this.swing = Math.max(this.widest, MIN_SWING);
       this.widest = 0;
       this.note = note;
     }
@@ -79,7 +79,7 @@ export class Strings {
   draw({ context, surface, colours }, level, knots) {
     const along = placesOf(knots);
     const side = surface.isUpright ? 1 : -1;
-    const gain = (side * Math.min(SWING * surface.breadth, MOST_SWING)) / this.swing;
+    const gain = (side * Math.min(SWING * surface.breadth, MAX_SWING)) / this.swing;
     context.lineCap = context.lineJoin = "round";
     for (const string of [0, 1]) {
       const lane = laneOf(surface, string);

@@ -9,17 +9,17 @@ import { translate } from "../i18n.js";
 import { disc, font, line } from "./picture.js";
 
 const NECK = 0.055; // half its width, of the breadth
-const MOST_NECK = 30; // px
+const MAX_NECK = 30; // px
 const APART = 0.55; // of the neck's half width: each string from the middle
 const LABELS = 66; // px at the soft side, with the names of notes
 const GRAINS = 5;
-const LEAST_FOR_SOFT = 340; // px across: else a button is there
+const MIN_FOR_SOFT = 340; // px across: else a button is there
 const KEY = 22; // px, the side of a printed key
 const BESIDE = 62; // px from the edge, where buttons for lower and higher notes stand
 
 /** Half the width of the neck, px. @param {Surface} surface */
 function neckOf({ breadth }) {
-  return Math.min(NECK * breadth, MOST_NECK);
+  return Math.min(NECK * breadth, MAX_NECK);
 }
 
 /**
@@ -209,7 +209,7 @@ export function writeNotes({ context, surface, colours, fingerboard: { scale }, 
   context.fillStyle = colours.soft;
   const loud = isUpright ? breadth - 24 : 14;
   write(translate("board.loud"), board[0] - 18, loud);
-  if (isUpright || breadth > LEAST_FOR_SOFT) {
+  if (isUpright || breadth > MIN_FOR_SOFT) {
     write(translate("board.soft"), board[0] - 18, put(LABELS + (isUpright ? -24 : 10)));
   }
 }

@@ -16,7 +16,7 @@ import { Wood, laneOf, writeNotes } from "./wood.js";
 
 const FINGER = 15; // px
 const SAME = 0.01; // semitones
-const LEAST_FOR_NUMBERS = 420; // px; lower, they would lie over the coconut
+const MIN_FOR_NUMBERS = 420; // px; lower, they would lie over the coconut
 
 export class Yehu extends Picture {
   /**
@@ -133,7 +133,7 @@ export class Yehu extends Picture {
     if (isBowed && !Number.isNaN(pitch)) this.#sounding(pitch);
     context.restore();
     this.#words(state);
-    if (bow.hands.isBowing && this.height > LEAST_FOR_NUMBERS) this.#numbers();
+    if (bow.hands.isBowing && this.height > MIN_FOR_NUMBERS) this.#numbers();
   }
 
   /**

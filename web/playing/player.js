@@ -10,7 +10,7 @@ const { MESSAGE, FINGER_ON, NOTE_OFF, LOAD, DISCONNECT, RELEASE_ALL } = facts.ev
 const { LOWEST_NOTE, HIGHEST_NOTE, ELSEWHERE } = facts.notes;
 const HIGHEST_KEY = facts.notes.KEYS - 1;
 const { CHANNELS } = facts.sources;
-const MOST_BYTES = 3; // of a message
+const MAX_BYTES = 3; // of a message
 /** @type {Readonly<Record<string, Tuning>>} */
 const TUNINGS = facts.tunings;
 /** @type {Readonly<Record<string, {values: Readonly<Record<string, number>>}>>} */
@@ -153,7 +153,7 @@ export class Player {
    */
   midi(bytes, frame = null, port = 0) {
     const { length, 0: status = 0, 1: one = 0, 2: two = 0 } = bytes;
-    if (length > MOST_BYTES) return;
+    if (length > MAX_BYTES) return;
     const packed = status + one * 2 ** 8 + two * 2 ** 16 + length * 2 ** 24 + port * 2 ** 32;
     this.#part.take(this.#at(frame), MESSAGE, packed);
   }

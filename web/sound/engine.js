@@ -9,7 +9,7 @@ const SNAPSHOTS_A_SECOND = 60;
 const CHUNK = 4096; // recorded frames that are posted at a time
 const FAINT = 1e-3; // of full scale; what is fainter dies away within the time that follows
 const SLEEPS_AFTER_S = 4; // without a command or a sound
-const MOST_SNAPSHOTS = 4; // that nobody has given back yet; then no page reads them
+const MAX_SNAPSHOTS = 4; // that nobody has given back yet; then no page reads them
 
 /**
  * @typedef {object} Take
@@ -43,7 +43,7 @@ export class Engine {
     this.rate = rate;
     this.post = post;
     /** @type {Float64Array[]} */
-    this.free = Array.from({ length: MOST_SNAPSHOTS }, () => new Float64Array(snapshotLength));
+    this.free = Array.from({ length: MAX_SNAPSHOTS }, () => new Float64Array(snapshotLength));
     this.nextSnapshot = 0;
     this.frame = 0;
     this.restless = 0; // frame until which something was asked for, or sounded

@@ -18,7 +18,7 @@ const FADE = 64; // frames
 const AVERAGE_S = 0.5;
 const P = 0.2;
 const I = 0.02;
-const MOST_DRIFT = 0.005;
+const MAX_DRIFT = 0.005;
 const TOO_FULL_S = 0.06; // above the aim: then some is left out
 
 /** Windowed sincs, by phase. */
@@ -114,10 +114,10 @@ export class JitterBuffer {
   #follow(seconds) {
     const error = (this.fill - this.aim) / this.sourceRate;
     this.average += (error - this.average) * Math.min(1, seconds / AVERAGE_S);
-    const most = MOST_DRIFT / I;
+    const most = MAX_DRIFT / I;
     this.sum = Math.min(most, Math.max(-most, this.sum + this.average * seconds));
     const drift = P * this.average + I * this.sum;
-    this.drift = Math.min(MOST_DRIFT, Math.max(-MOST_DRIFT, drift));
+    this.drift = Math.min(MAX_DRIFT, Math.max(-MAX_DRIFT, drift));
     this.steadyS += seconds;
     if (this.steadyS > SHRINK_S && this.aim > LEAST) {
       this.aim = Math.max(LEAST, Math.round(this.aim * SHRINKING));

@@ -2,7 +2,7 @@
 
 import { Engine } from "./engine.js";
 
-const MOST_FRAMES = 128;
+const MAX_FRAMES = 128;
 
 /* global AudioWorkletProcessor, registerProcessor, sampleRate */
 
@@ -10,7 +10,7 @@ class Processor extends AudioWorkletProcessor {
   /** @param {{processorOptions: {bytes: ArrayBuffer, snapshotLength: number}}} options */
   constructor({ processorOptions: { bytes, snapshotLength } }) {
     super();
-    this.engine = new Engine(bytes, sampleRate, MOST_FRAMES, snapshotLength, (report, buffers) =>
+    this.engine = new Engine(bytes, sampleRate, MAX_FRAMES, snapshotLength, (report, buffers) =>
       this.port.postMessage(report, /** @type {Transferable[]} */ (buffers)),
     );
     this.isOpen = true;
@@ -27,8 +27,8 @@ class Processor extends AudioWorkletProcessor {
   process(inputs, outputs) {
     const [left, right] = outputs[0];
     const voice = inputs[0]?.[0];
-    for (let done = 0; done < left.length; done += MOST_FRAMES) {
-      const end = done + MOST_FRAMES;
+    for (let done = 0; done < left.length; done += MAX_FRAMES) {
+      const end = done + MAX_FRAMES;
       if (voice) this.engine.hear(voice.subarray(done, end));
       this.engine.fill(left.subarray(done, end), right.subarray(done, end));
     }

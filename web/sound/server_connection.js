@@ -8,7 +8,7 @@ const AGAIN_MS = 500;
 const AGAIN_AT_MOST_MS = 5000;
 const SNAPSHOT = 0; // what the first number of a message says
 const COMMANDS = 1;
-const MOST_UNSENT = 1 << 16; // bytes
+const MAX_UNSENT = 1 << 16; // bytes
 const FIRST_PART = "1";
 const NO_PIN = 4401; // close codes: the server wants a PIN, or another one
 const NO_PART = 4404; // the server has no such part
@@ -115,7 +115,7 @@ export class ServerConnection extends EventTarget {
    * @param {Float64Array<ArrayBuffer>} commands
    */
   send(commands) {
-    if (this.isOpen && this.socket && this.socket.bufferedAmount < MOST_UNSENT) {
+    if (this.isOpen && this.socket && this.socket.bufferedAmount < MAX_UNSENT) {
       this.socket.send(commands);
     }
   }

@@ -7,7 +7,7 @@ import { find } from "../playing/table.js";
 
 /** Points of a string's shape. */
 export const POINTS = facts.snapshot.shapes[1] / 2;
-const LEAST_DB = -160;
+const MIN_DB = -160;
 
 /** Where each field begins. @type {Record<string, number>} */
 const AT = Object.fromEntries(Object.entries(facts.snapshot).map(([name, [at]]) => [name, at]));
@@ -31,7 +31,7 @@ export function snapshotOf(numbers) {
       errorCents: numbers[AT.error],
       slips: numbers[AT.slips],
     },
-    level: numbers[AT.rms] > 0 ? Math.max(20 * Math.log10(numbers[AT.rms]), LEAST_DB) : LEAST_DB,
+    level: numbers[AT.rms] > 0 ? Math.max(20 * Math.log10(numbers[AT.rms]), MIN_DB) : MIN_DB,
     shape: [shapeOf(numbers, 0), shapeOf(numbers, 1)],
     bow: { string, speed: numbers[AT.speed], force: numbers[AT.force], beta, x: numbers[AT.bow_x] },
     hair: { place: numbers[AT.hair_place], length: numbers[AT.hair_length] },

@@ -24,7 +24,7 @@ import { makeVoice } from "./voice.js";
 
 const ALL = "";
 const MINUTE = 60_000; // ms
-const MOST_COUNTED = 999;
+const MAX_COUNTED = 999;
 const ROWS = [
   ["Digit2", "Digit3", "Digit4", "Digit5", "Digit6", "Digit7"],
   ["KeyQ", "KeyW", "KeyE", "KeyR", "KeyT", "KeyY", "KeyU", "KeyI"],
@@ -81,10 +81,10 @@ function dropoutsOf(instrument) {
     if (sound !== known) [known, before] = [sound, sound?.status.dropouts ?? 0];
     const all = sound?.status.dropouts ?? 0;
     times.push(
-      ...Array.from({ length: Math.max(Math.min(all - before, MOST_COUNTED), 0) }, () => now),
+      ...Array.from({ length: Math.max(Math.min(all - before, MAX_COUNTED), 0) }, () => now),
     );
     before = all;
-    times = times.filter((time) => now - time < MINUTE).slice(-MOST_COUNTED);
+    times = times.filter((time) => now - time < MINUTE).slice(-MAX_COUNTED);
     return times.length;
   };
   setInterval(count, 1000);

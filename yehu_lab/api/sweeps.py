@@ -19,8 +19,8 @@ from yehu_server.scores.gesture import Gesture
 
 __all__ = ["Sweep", "sweep"]
 
-MOST_WORKERS = 1024
-MOST_RUNS = 1_000_000
+MAX_WORKERS = 1024
+MAX_RUNS = 1_000_000
 
 
 def sweep(
@@ -63,16 +63,16 @@ def sweep(
     (2, 2)
     """
     axes = _axes(vary)
-    if (count := math.prod(map(len, axes.values()))) > MOST_RUNS:
+    if (count := math.prod(map(len, axes.values()))) > MAX_RUNS:
         raise ParameterError(
-            f"{count} runs are more than {MOST_RUNS}; `yehu-server sweep` does any number"
+            f"{count} runs are more than {MAX_RUNS}; `yehu-server sweep` does any number"
         )
     if isinstance(gesture, Mapping):
         data = plain_gesture(gesture)
     else:
         data = dict(gesture_of(gesture).source)
     study = study_of({"gesture": data, "vary": axes})
-    most = None if workers is None else whole(workers, "workers", 1, MOST_WORKERS)
+    most = None if workers is None else whole(workers, "workers", 1, MAX_WORKERS)
     get_ready([bow_stroke])
     return run_all(study, workers=most, progress=progress)
 

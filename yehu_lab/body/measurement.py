@@ -18,8 +18,8 @@ from yehu_lab.body.tap import SOUND_ENDINGS, Tap, parse_channels, read_recording
 from yehu_server.errors import MeasurementError
 
 LOWEST_HZ, HIGHEST_HZ = 100.0, 8000.0  # of the band that is used, where no other is given
-LEAST_COHERENCE, LEAST_SHARE = 0.8, 0.9
-MOST_SENSOR_KG = 0.05
+MIN_COHERENCE, MIN_SHARE = 0.8, 0.9
+MAX_SENSOR_KG = 0.05
 REACH_HZ = 4000.0  # a hammer that does not excite up to here misses modes that are heard
 
 
@@ -130,9 +130,9 @@ def average(
     taps: Sequence[Tap], responses: Sequence[Response] = (), *, sensor_mass: float | None = None
 ) -> Measurement:
     """Average taps and responses that are in memory, and check what they give; see `read`."""
-    if sensor_mass is not None and not 0.0 <= sensor_mass <= MOST_SENSOR_KG:
+    if sensor_mass is not None and not 0.0 <= sensor_mass <= MAX_SENSOR_KG:
         raise MeasurementError(
-            f"sensor_mass: {sensor_mass:g} kg is not within 0 to {MOST_SENSOR_KG:g} kg"
+            f"sensor_mass: {sensor_mass:g} kg is not within 0 to {MAX_SENSOR_KG:g} kg"
         )
     averaged = average_taps(taps) if taps else Averaged(None, None, HIGHEST_HZ, ())
     warnings = list(averaged.warnings)
@@ -191,10 +191,10 @@ def _checked(curve: Curve, what: str, highest_hz: float, kind: str) -> list[str]
         )
     found = check_admittance(used, kind) if what == "admittance" else check_radiation(used)
     if used.coherence is not None:
-        share = float(np.mean(used.coherence >= LEAST_COHERENCE))
-        if share < LEAST_SHARE:
+        share = float(np.mean(used.coherence >= MIN_COHERENCE))
+        if share < MIN_SHARE:
             found.append(
-                f"{what}: coherence is below {LEAST_COHERENCE:g} at {1.0 - share:.0%} of "
+                f"{what}: coherence is below {MIN_COHERENCE:g} at {1.0 - share:.0%} of "
                 "frequencies: noise, or taps that differ"
             )
     return found

@@ -19,7 +19,7 @@ import numpy as np
 from yehu_lab.body.curve import Complexes, Floats
 
 RIDGE = 1e-13  # of the diagonal: keeps the factor of two modes at one place finite
-LEAST_SHARE = 1e-9  # of the largest amount: less is none
+MIN_SHARE = 1e-9  # of the largest amount: less is none
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def amounts_of(own: Floats, towards: Floats) -> Floats:
         return np.empty(0)
     factor = np.linalg.cholesky(_firm(own))
     amounts, _ = nnls(factor.T, solve_triangular(factor, towards, lower=True), maxiter=500)
-    return np.asarray(np.where(amounts > LEAST_SHARE * amounts.max(), amounts, 0.0))
+    return np.asarray(np.where(amounts > MIN_SHARE * amounts.max(), amounts, 0.0))
 
 
 def stacked(values: Complexes) -> Floats:

@@ -17,8 +17,8 @@ from yehu_lab.body.modes import Modes, Numbers, Problem, Step, step_at
 from yehu_server.util.extras import need
 
 HIGHEST_ORDER = 40  # of the polynomials; each order gives candidates
-MOST_LINES = 4000  # of the even grid that the method needs
-LEAST_DAMPING, MOST_DAMPING = 5e-4, 0.3  # damping ratios
+MAX_LINES = 4000  # of the even grid that the method needs
+MIN_DAMPING, MAX_DAMPING = 5e-4, 0.3  # damping ratios
 BESIDE = 1.05  # how far outside the band a pole may lie
 SAME_HZ, SAME_DAMPING = 0.002, 0.15  # relative: poles of two orders that are one candidate
 HIGHEST_HZ = 9500.0  # the model's modes lie below 0.45 of the lowest sample rate, 22.05 kHz
@@ -45,7 +45,7 @@ def starting_poles(frequency_hz: Floats, mobility: Complexes) -> tuple[Floats, F
     from sdypy.EMA import Model
 
     lo, hi = float(frequency_hz[0]), float(frequency_hz[-1])
-    lines = min(MOST_LINES, max(len(frequency_hz), 4 * HIGHEST_ORDER))
+    lines = min(MAX_LINES, max(len(frequency_hz), 4 * HIGHEST_ORDER))
     grid = np.linspace(lo, hi, lines)
     even = interpolated(grid, frequency_hz, mobility)[np.newaxis]
     form: Any = {"pol_order_high": HIGHEST_ORDER, "frf_form": "mobility"}
@@ -54,7 +54,7 @@ def starting_poles(frequency_hz: Floats, mobility: Complexes) -> tuple[Floats, F
     found_hz = np.concatenate([np.asarray(row).real for row in model.pole_freq])
     damping = np.concatenate([np.asarray(row).real for row in model.pole_xi])
     usable = (found_hz > lo / BESIDE) & (found_hz < hi * BESIDE)
-    usable &= (damping > LEAST_DAMPING) & (damping < MOST_DAMPING)
+    usable &= (damping > MIN_DAMPING) & (damping < MAX_DAMPING)
     return _once(found_hz[usable], damping[usable])
 
 
@@ -79,8 +79,8 @@ class Search:
         self.problem = problem
         self.wanted = problem.wanted
         lo, hi = float(problem.frequency_hz[0]), float(problem.frequency_hz[-1])
-        self.lowest = np.log([BELOW * lo, LEAST_DAMPING])
-        self.highest = np.log([min(ABOVE * hi, HIGHEST_HZ), MOST_DAMPING])
+        self.lowest = np.log([BELOW * lo, MIN_DAMPING])
+        self.highest = np.log([min(ABOVE * hi, HIGHEST_HZ), MAX_DAMPING])
         self.candidates = self._candidates(lo, hi)
         self.columns = problem.columns(self.candidates)[0].astype(np.float32)
 

@@ -28,7 +28,7 @@ LATER, STEP = 4, 0.4  # onsets that are tried after the first; periods of the hi
 START_DAMPING = 0.02
 FLOOR, NOISE = 0.02, 4.0  # errors that do not matter: relative, and in deviations
 OUTSIDE, OUTSIDE_LINES = 0.15, 60  # weight of silence outside the band, and at how many places
-MOST_DELAY_S = 0.02  # of sound on its way to the microphone: 7 m
+MAX_DELAY_S = 0.02  # of sound on its way to the microphone: 7 m
 
 
 @dataclass(frozen=True)
@@ -244,7 +244,7 @@ def _delay(curve: Curve) -> float:
     values[inside] *= np.hanning(int(inside.sum()))
     envelope = np.abs(np.fft.ifft(values, 8 * len(values)))
     time = np.arange(len(envelope)) / (8 * len(values) * step)
-    envelope, time = envelope[time < MOST_DELAY_S], time[time < MOST_DELAY_S]
+    envelope, time = envelope[time < MAX_DELAY_S], time[time < MAX_DELAY_S]
     onset = float(time[int(np.argmax(envelope > 0.2 * envelope.max()))])
     width = float(curve.frequency_hz[-1] - curve.frequency_hz[0])
     return max(0.0, onset - 1.0 / width) if as_db(envelope.max()) > -280.0 else 0.0

@@ -27,8 +27,8 @@ from yehu_lab.body.tap import (
 from yehu_server.errors import MeasurementError
 from yehu_server.util.files import MAX_TEXT_BYTES, read_lines, why
 
-LEAST_LINES = 20
-MOST_NUMBERS = 2**23
+MIN_LINES = 20
+MAX_NUMBERS = 2**23
 UNEVEN = 1e-3  # relative: how much steps of time may differ
 
 
@@ -94,10 +94,10 @@ def _numbers(path: Path, lines: Iterator[str]) -> tuple[list[str], Floats]:
             raise MeasurementError(f"{path}: no numbers in {line[:40]!r}") from None
         if len(cells) != len(headings):
             raise MeasurementError(f"{path}: {len(headings)} columns, but not in {line[:40]!r}")
-        if len(found) > MOST_NUMBERS:
-            raise MeasurementError(f"{path}: has more than {MOST_NUMBERS} numbers")
+        if len(found) > MAX_NUMBERS:
+            raise MeasurementError(f"{path}: has more than {MAX_NUMBERS} numbers")
     count = 1 + len(found) // len(headings) if headings else 0
-    if count < LEAST_LINES:
+    if count < MIN_LINES:
         raise MeasurementError(f"{path}: has {count} lines, too few for a measurement")
     numbers = np.frombuffer(found).reshape(-1, len(headings))
     if not np.isfinite(numbers).all():
@@ -178,6 +178,6 @@ def rising(curve: Curve, where: str) -> Curve:
     """
     order = np.argsort(curve.frequency_hz, kind="stable")
     found = curve.at(order[curve.frequency_hz[order] > 0.0])
-    if len(found.values) < LEAST_LINES or np.diff(found.frequency_hz).min() <= 0.0:
+    if len(found.values) < MIN_LINES or np.diff(found.frequency_hz).min() <= 0.0:
         raise MeasurementError(f"{where}: too few lines, or two at one frequency")
     return found

@@ -36,7 +36,7 @@ OVER_NOISE = 8.0  # where it stands out of the noise by so many deviations
 FLAT, EQUAL = 3, 1e-5  # samples of equal height that a clipped peak has, and how equal
 SHORTEST_S = 0.05  # after the hit: less shows nothing of a body
 LONGEST_FILE_S = 600.0
-MOST_SAMPLES = 2**24  # of all channels, in a file: three minutes of two channels at 48 kHz
+MAX_SAMPLES = 2**24  # of all channels, in a file: three minutes of two channels at 48 kHz
 LOWEST_RATE, HIGHEST_RATE = 8000, 400_000
 SOUND_ENDINGS = (".wav", ".wave", ".flac", ".aif", ".aiff")
 SUBTYPE = "PCM_24"
@@ -235,9 +235,9 @@ def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
                 raise MeasurementError(
                     f"{path}: has {count} channels, not {len(channels)} as given"
                 )
-            if file.frames * count > MOST_SAMPLES:
+            if file.frames * count > MAX_SAMPLES:
                 raise MeasurementError(
-                    f"{path}: has {file.frames * count} samples, more than {MOST_SAMPLES}"
+                    f"{path}: has {file.frames * count} samples, more than {MAX_SAMPLES}"
                 )
             samples = file.read(dtype="float64", always_2d=True)
     except OSError as error:

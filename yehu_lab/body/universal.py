@@ -18,7 +18,7 @@ from yehu_server.util.extras import need
 from yehu_server.util.files import read_bytes, why
 
 ENDINGS = (".uff", ".unv", ".uf", ".bunv")
-MOST_BYTES = 256 * 2**20
+MAX_BYTES = 256 * 2**20
 RESPONSE, TIME, COHERENCE, UNITS = 4, 1, 6, 164
 SMALLEST, LARGEST = 1e-9, 1e9  # units, to the metre and newton
 # Specific data types of the format's record 9.
@@ -50,7 +50,7 @@ def _sets(path: Path) -> list[dict[str, Any]]:
     import pyuff
 
     try:
-        read_bytes(path, MOST_BYTES)  # the library reads pipes and directories, or tries to
+        read_bytes(path, MAX_BYTES)  # the library reads pipes and directories, or tries to
     except OSError as error:
         raise MeasurementError(f"{path}: {why(error)}") from error
     try:

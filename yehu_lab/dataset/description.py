@@ -31,9 +31,9 @@ from yehu_server.util.values import choice, choices, line, number, whole
 
 LICENCE = "MIT"  # where none is given: that of this program, and of the body it was measured with
 KINDS = ("strokes", "notes")
-MOST_SOUNDS = 10_000_000
+MAX_SOUNDS = 10_000_000
 LONGEST_S = 60.0  # of one sound
-MOST_NOTES = 32
+MAX_NOTES = 32
 COUNTS = ("string", "notes")
 
 # By kind: each value that may be drawn, its default, and its bounds.
@@ -54,7 +54,7 @@ STROKES = {
     "force_attack": (0.01, 0.0, 10.0),
 }
 NOTES = {
-    "notes": (1.0, 1.0, float(MOST_NOTES)),
+    "notes": (1.0, 1.0, float(MAX_NOTES)),
     "pitch": (69.0, *YEHU.ends),  # fractional MIDI notes; of a yehu
     "velocity": (80.0, 1.0, 127.0),
     "length": (0.5, 0.05, LONGEST_S),  # s
@@ -122,7 +122,7 @@ def description_of(data: Mapping[str, Any] | Fields, folder: Path = Path()) -> D
     text = json.dumps(kept | neutral, sort_keys=True, default=str)
     description = Description(
         kind=kind,
-        count=table.read("count", whole, 100, 1, MOST_SOUNDS),
+        count=table.read("count", whole, 100, 1, MAX_SOUNDS),
         seed=table.read("seed", whole, 0, 0, 2**63 - 1),
         rate=rate,
         draws=_draws(table.table("draw"), kind, quantities),

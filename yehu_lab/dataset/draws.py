@@ -20,7 +20,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.util.documents import Fields
 from yehu_server.util.values import choice, number
 
-MOST_CHOICES = 1000
+MAX_CHOICES = 1000
 NORMAL = ("mean", "deviation", "from", "to")
 
 
@@ -125,6 +125,6 @@ def shares_of(weights: Sequence[float]) -> tuple[float, ...]:
 
 def numbers(value: Any) -> list[float]:
     """A list of numbers, not empty. Raises ParameterError where it is none."""
-    if not isinstance(value, list) or not 0 < len(value) <= MOST_CHOICES:
-        raise ParameterError(f"expected a list of 1 to {MOST_CHOICES} numbers")
+    if not isinstance(value, list) or not 0 < len(value) <= MAX_CHOICES:
+        raise ParameterError(f"expected a list of 1 to {MAX_CHOICES} numbers")
     return [number(each) for each in value]

@@ -11,7 +11,7 @@ import numpy as np
 
 from yehu_lab.dataset.description import Description
 from yehu_lab.regimes.columns import REGIMES, UNBOWED
-from yehu_lab.regimes.judge import LEAST_PERIODS, PERIODS, judge
+from yehu_lab.regimes.judge import MIN_PERIODS, PERIODS, judge
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.playing.calibration_store import calibration_for
@@ -80,7 +80,7 @@ def regimes(
         part = slice(begin, end)
         drift = np.abs(1200.0 * np.log2(asked_hz[part] / hertz))
         is_bowed = force[end - 1] >= lift_force and (force[part] >= lift_force).mean() > BOWED
-        is_long = (end - begin) * hertz >= LEAST_PERIODS * rate
+        is_long = (end - begin) * hertz >= MIN_PERIODS * rate
         if not (is_bowed and is_long and drift.max() < STEADY_CENTS):
             continue
         judged = judge(velocity[part], bow[part], pressure[part], rate, float(hertz))

@@ -21,8 +21,8 @@ MEASURED, FITTED, LEFT = "0.55", "#c03a2b", "#1f5fa8"
 LINES = 3000
 RESIDUAL_DB = 6.0
 TICKS_HZ = (100, 200, 300, 500, 700, 1000, 2000, 3000, 5000, 7000, 10000)
-MOST_WARNINGS, WIDTH = 5, 150
-MOST_MODES = 36  # rows of the table that the page has room for
+MAX_WARNINGS, WIDTH = 5, 150
+MAX_MODES = 36  # rows of the table that the page has room for
 NAMES = 90  # characters of the measurements' names
 ROWS = ("admittance", "phase", "radiation", "left")
 
@@ -67,9 +67,9 @@ def _draw(figure: Any, fit: Fit) -> None:
     panels["admittance"].set_title(_title(fit), loc="left", fontsize=10.5)
     _write_table(panels["table"], fit)
     if fit.warnings:
-        lines = [png.plain(line, WIDTH) for line in fit.warnings[:MOST_WARNINGS]]
-        if len(fit.warnings) > MOST_WARNINGS:
-            lines.append(f"and {len(fit.warnings) - MOST_WARNINGS} more")
+        lines = [png.plain(line, WIDTH) for line in fit.warnings[:MAX_WARNINGS]]
+        if len(fit.warnings) > MAX_WARNINGS:
+            lines.append(f"and {len(fit.warnings) - MAX_WARNINGS} more")
         figure.supxlabel("\n".join(lines), fontsize=9.0, color=FITTED, ha="left", x=0.01)
 
 
@@ -119,9 +119,9 @@ def _scale(axes: Any, band_hz: tuple[float, float], *, is_last: bool) -> None:
 
 def _write_table(axes: Any, fit: Fit) -> None:
     axes.axis("off")
-    modes = lines_of(fit)[: 1 + min(len(fit.body.mass), MOST_MODES)]
-    if len(fit.body.mass) > MOST_MODES:
-        modes.append(f"and {len(fit.body.mass) - MOST_MODES} more")
+    modes = lines_of(fit)[: 1 + min(len(fit.body.mass), MAX_MODES)]
+    if len(fit.body.mass) > MAX_MODES:
+        modes.append(f"and {len(fit.body.mass) - MAX_MODES} more")
     lines = [
         f"{len(fit.body.mass)} bridge modes",
         f"{len(fit.body.sections)} sections of radiation",

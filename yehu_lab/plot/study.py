@@ -30,7 +30,7 @@ from yehu_lab.plot.cells import (
 from yehu_lab.plot.sweep_maps import (
     ALONG,
     FORCE,
-    MOST_PERIODS,
+    MAX_PERIODS,
     PERIODS,
     draw_map,
     is_log_along,
@@ -46,10 +46,10 @@ from yehu_server.util.files import read_text, write_text
 
 Array = Any
 
-MOST_PANELS = 30
-LEAST_WIDTH = 8.0  # inches, for the legend
+MAX_PANELS = 30
+MIN_WIDTH = 8.0  # inches, for the legend
 TEMPLATE = Path(__file__).with_name("study_page.html")
-MOST_CELLS = 20_000_000
+MAX_CELLS = 20_000_000
 LEVELS = 254  # that a byte distinguishes; 255 is none
 NONE = 255
 # Cents off the median: on the scale of all pitches, which has octaves, flattening is not seen.
@@ -72,8 +72,8 @@ def write_picture(
     x, y = plane_of({name: len(values) for name, values in result.axes.items()})
     others = [name for name in result.axes if name not in (x, y)]
     places = list(itertools.product(*(range(len(result.axes[name])) for name in others)))
-    left_out = max(0, len(places) - MOST_PANELS)
-    maps = [dict(zip(others, place, strict=True)) for place in places[:MOST_PANELS]]
+    left_out = max(0, len(places) - MAX_PANELS)
+    maps = [dict(zip(others, place, strict=True)) for place in places[:MAX_PANELS]]
     across = min(len(maps), max(3, math.ceil(math.sqrt(len(maps)))))
     down = math.ceil(len(maps) / across)
     more = f" ({left_out} more maps are not drawn)" if left_out else ""
@@ -110,7 +110,7 @@ def write_picture(
         about = str(result.meta["study"].get("about", ""))
         figure.suptitle(png.plain(about) + more, fontsize="medium")
 
-    size = (max(LEAST_WIDTH, 1.5 + 3.4 * across), 1.6 + 3.0 * down)
+    size = (max(MIN_WIDTH, 1.5 + 3.4 * across), 1.6 + 3.0 * down)
     png.write_picture(target, size, fill, overwrite=overwrite)
 
 
@@ -180,8 +180,8 @@ def write_page(result: Result, target: Path) -> None:
     x, y = plane_of({name: len(values) for name, values in result.axes.items()})
     if y is None:
         raise ParameterError("a page needs two axes at least")
-    if math.prod(result.shape) > MOST_CELLS:
-        raise ParameterError(f"a page has at most {MOST_CELLS} points")
+    if math.prod(result.shape) > MAX_CELLS:
+        raise ParameterError(f"a page has at most {MAX_CELLS} points")
     title = str(result.meta["study"].get("about", "")) or "A sweep"
     note = f"{len(result)} strokes, by {result.meta['made_by']}."
     if result.meta["levels"]:
@@ -240,7 +240,7 @@ def _columns(result: Result, order: list[int]) -> list[dict[str, Any]]:
         }
     ]
     kinds: tuple[tuple[str, str, Array, str, tuple[float, float] | None], ...] = (
-        ("periods to Helmholtz motion", "never", result.onset_periods(), "", (0.0, MOST_PERIODS)),
+        ("periods to Helmholtz motion", "never", result.onset_periods(), "", (0.0, MAX_PERIODS)),
         ("pitch of Helmholtz motion", "other", result.flattening(), "cents", FLATTENING),
         ("slips a period", "none", result.grid("slips"), "", (0.0, 6.0)),
         ("pitch", "none", result.grid("pitch_hz"), "Hz", None),

@@ -33,9 +33,9 @@ FORCE = ("bow_force", "force")
 PLACE = ("bow_position", "position")
 ACCELERATION = ("bow_acceleration", "acceleration")
 ALONG = 24  # places at which limits are worked out
-MOST_PERIODS = 60.0  # that the colours of a time distinguish
+MAX_PERIODS = 60.0  # that the colours of a time distinguish
 PERIODS = "periods from the first slip to Helmholtz motion"
-PERIOD_COLOURS: Any = {"cmap": "viridis_r", "vmin": 0.0, "vmax": MOST_PERIODS}
+PERIOD_COLOURS: Any = {"cmap": "viridis_r", "vmin": 0.0, "vmax": MAX_PERIODS}
 # What is drawn along y, where a result has it: forces first.
 UPRIGHT = ("force", "bow_force", "press", "press_force", "tension")
 BESIDE: Any = {

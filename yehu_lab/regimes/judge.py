@@ -44,7 +44,7 @@ Array = Any
 WINDOW_S = 0.04  # of the spectrum whose centroid is the brightness
 PERIODS = 10  # at the end of a stroke, which are judged
 LONGEST, SHORTEST = 4.3, 0.1  # periods after which motion may repeat
-LEAST_PERIODS = LONGEST + 2.0  # of a stroke
+MIN_PERIODS = LONGEST + 2.0  # of a stroke
 QUIET = 0.15  # of the bow's speed: a string that moves less under the bow is silent
 SLIDING = 0.03  # of the time, sticking: below, the hair slides steadily
 STILL = 1e-4  # m/s, the same of a bow that is at rest
@@ -111,7 +111,7 @@ def judge_end(
     """Judge the last periods of a stroke; write regime, slips, certainty and pitch.
 
     Of the velocity of string on hair (m/s) and the slipping of `periods.rectify` [shape=(at least
-    frames,)], at least LEAST_PERIODS of the note (samples), and the bow's speed (m/s), not
+    frames,)], at least MIN_PERIODS of the note (samples), and the bow's speed (m/s), not
     negative. `work` [shape=(2, at least frames)] is written.
     """
     count = int(LONGEST * period) + 2
@@ -288,7 +288,7 @@ def judge(
     Of the velocity of the bowed string on the hair (m/s), as `simulate` keeps it, the bow's
     velocity (m/s), and the pressure (Pa), each [shape=(frames,)]; and the frequency of the note
     that is fingered, which may be off by 6 %. Raises ParameterError where the stroke has less than
-    LEAST_PERIODS.
+    MIN_PERIODS.
     """
     frames = len(relative_velocity)
     check_length(frames, rate, frequency_hz)
@@ -299,9 +299,9 @@ def judge(
 
 
 def check_length(frames: int, rate: float, frequency_hz: float) -> None:
-    """Refuse a stroke of less than LEAST_PERIODS of its note; raises ParameterError."""
-    if not frames * frequency_hz >= LEAST_PERIODS * rate:
+    """Refuse a stroke of less than MIN_PERIODS of its note; raises ParameterError."""
+    if not frames * frequency_hz >= MIN_PERIODS * rate:
         raise ParameterError(
             f"{frames / rate:g} s are too short to judge a note of {frequency_hz:.4g} Hz: "
-            f"{LEAST_PERIODS / frequency_hz:.3g} s are needed"
+            f"{MIN_PERIODS / frequency_hz:.3g} s are needed"
         )

@@ -14,8 +14,8 @@ Array = Any
 NOWHERE = -1
 LASTING = 10  # slips, one a period, after which Helmholtz motion is said to have begun
 REGULAR = 0.08  # of a period, by which their distances may be off; [Guettler]
-LEAST_SLIP = 0.3  # of the bow's speed; in Helmholtz motion a slip is 1 / beta of it
-LEAST_SPEED = 0.02  # m/s; as the bow sets off the bristles bend, which is no slip
+MIN_SLIP = 0.3  # of the bow's speed; in Helmholtz motion a slip is 1 / beta of it
+MIN_SPEED = 0.02  # m/s; as the bow sets off the bristles bend, which is no slip
 FADING = 8.0  # periods after which a large slip no longer hides smaller ones
 
 
@@ -129,7 +129,7 @@ def times_of_slips(
     for i in range(frames):
         size = slipping[i]
         largest = max(size, largest * fade)
-        least = max(SLIP_BEGIN_FRACTION * largest, LEAST_SLIP * abs(bow_velocity[i]), LEAST_SPEED)
+        least = max(SLIP_BEGIN_FRACTION * largest, MIN_SLIP * abs(bow_velocity[i]), MIN_SPEED)
         if is_slipping:
             is_slipping = size > SLIP_END_FRACTION / SLIP_BEGIN_FRACTION * least
         elif size > least and bow_velocity[i] != 0.0:

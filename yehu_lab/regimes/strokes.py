@@ -39,7 +39,7 @@ from yehu_server.core.physics.time_loop import advance_by, kernel_of
 Array = Any
 
 BLOCK = 128  # frames computed at a time, so that controls and probes stay in the cache
-MOST_FAULTS = 255
+MAX_FAULTS = 255
 BLOCKS = np.dtype(
     [
         ("controls", np.float64, (BLOCK, control_columns(1))),
@@ -210,7 +210,7 @@ def bow_stroke(
     judge_signals(signals, room, stroke.frames, rate, stroke.frequency_hz, out)
     if abs(force) < m.lift_force:
         out.regime = UNBOWED
-    out.faults = min(MOST_FAULTS, s.unconverged + s.lost)
+    out.faults = min(MAX_FAULTS, s.unconverged + s.lost)
 
 
 # What sweeps call, but for what playing calls, by the file that its machine code is kept in.

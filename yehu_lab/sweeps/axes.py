@@ -16,7 +16,7 @@ from yehu_server.util.values import brief, choice, number, whole
 
 Array = Any
 
-MOST_VALUES = 100_000  # of an axis
+MAX_VALUES = 100_000  # of an axis
 SPREADS = ("linear", "log")
 Value = float | str
 
@@ -48,7 +48,7 @@ class Axis:
 
 def spread_axis(name: str, first: float, last: float, steps: int, spread: str) -> Axis:
     """An axis of values from `first` to `last`, both with; raises ParameterError."""
-    whole(steps, 2, MOST_VALUES)
+    whole(steps, 2, MAX_VALUES)
     choice(spread, SPREADS)
     if not (math.isfinite(first) and math.isfinite(last)):
         raise ParameterError(f"{first} to {last} is not finite")
@@ -91,15 +91,15 @@ def _value(text: str) -> Value:
 def axis_from(name: str, entry: Any) -> Axis:
     """Read an axis of a study: a list, or from, to, steps and spread; raises ParameterError."""
     if isinstance(entry, list):
-        if not 1 <= len(entry) <= MOST_VALUES:
-            raise ParameterError(f"expected 1 to {MOST_VALUES} values")
+        if not 1 <= len(entry) <= MAX_VALUES:
+            raise ParameterError(f"expected 1 to {MAX_VALUES} values")
         return Axis(name, tuple(x if isinstance(x, str) else number(x) for x in entry))
     if not isinstance(entry, Mapping):
         raise ParameterError(f"expected a list, or from, to and steps, got {brief(entry)}")
     table = Fields(entry)
     table.refuse_others("from", "to", "steps", "spread")
     first, last = table.need("from", number), table.need("to", number)
-    steps = table.need("steps", whole, 2, MOST_VALUES)
+    steps = table.need("steps", whole, 2, MAX_VALUES)
     return spread_axis(name, first, last, steps, table.read("spread", choice, "linear", SPREADS))
 
 

@@ -34,7 +34,7 @@ Array = Any
 
 BESIDE = ("sample_rate", "duration", "instrument", "stroke")  # a gesture file has its own
 LEAST, MOST = 1e-3, 1e5  # of it
-MOST_INSTRUMENTS = 100_000  # and other entries of gestures; each is checked
+MAX_INSTRUMENTS = 100_000  # and other entries of gestures; each is checked
 TOUCHING = 1e-9  # N of press, above which a finger stops the strings
 
 
@@ -71,8 +71,8 @@ class GestureBow:
         others = [axis for axis in axes if not _is_control(axis.name)]
         others = [axis for axis in others if axis.name != ACCELERATION]
         count = math.prod(len(axis.values) for axis in others)
-        if count > MOST_INSTRUMENTS:
-            raise ParameterError(f"{count} instruments are more than {MOST_INSTRUMENTS}")
+        if count > MAX_INSTRUMENTS:
+            raise ParameterError(f"{count} instruments are more than {MAX_INSTRUMENTS}")
         for values in itertools.product(*(axis.values for axis in others)):
             varied = dict(zip([axis.name for axis in others], values, strict=True))
             gesture = self._gesture(varied)

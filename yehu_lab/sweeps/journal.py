@@ -27,7 +27,7 @@ Array = Any
 
 HEAD = struct.Struct("<II")  # number of points, checksum
 ENDING = ".part"
-MOST_HEADER = 1 << 24
+MAX_HEADER = 1 << 24
 
 
 def journal_of(target: Path) -> Path:
@@ -113,7 +113,7 @@ class Journal(Done):
     def _read(self, key: str) -> int:
         """Read what is done; return how many bytes of the file are good."""
         with open_regular(self.path) as file:
-            line = file.readline(MOST_HEADER)
+            line = file.readline(MAX_HEADER)
             if not line.endswith(b"\n") and _header(key).startswith(line):
                 return 0  # a full disk, or a crash, cut it off
             try:

@@ -33,7 +33,7 @@ Array = NDArray[Any]
 FORMAT, VERSION = "yehu-server sweep", 1
 COLUMNS = tuple(FINDING.names or ())
 # Of a file, so that a small one cannot fill the memory.
-LEAST_GRID, MOST_EMPTY = 2**23, 1024  # points of the finest grid; times the computed ones
+MIN_GRID, MAX_EMPTY = 2**23, 1024  # points of the finest grid; times the computed ones
 OF_BOW = {"force", "position", "speed", "acceleration", "noise", "seed"}
 OF_BOW |= {"bow_force", "bow_position", "bow_velocity", "bow_acceleration", "bow_noise"}
 
@@ -214,7 +214,7 @@ class Result:
             raise ValueError("columns of other lengths")
         if numbers.dtype.kind not in "iu" or any(values.ndim != 1 for values in axes.values()):
             raise ValueError("axes or points of another kind")
-        if size > max(LEAST_GRID, MOST_EMPTY * len(numbers)):
+        if size > max(MIN_GRID, MAX_EMPTY * len(numbers)):
             raise ValueError("hardly anything on a huge grid")
         if columns["regime"].max(initial=0) >= len(meta["regimes"]):
             raise ValueError("a regime without a name")

@@ -31,7 +31,7 @@ Progress = Callable[[float, float], None]
 
 CHUNK = 64  # strokes that are one task
 _study = lru_cache(maxsize=4)(study_from_text)
-MOST_FILES = 10_000
+MAX_FILES = 10_000
 NAME = re.compile(r"[0-9]+\.npz")
 
 
@@ -235,14 +235,14 @@ def keep_signals(
 def prepare_folder(study: Study, folder: Path, *, overwrite: bool = False) -> None:
     """Make the folder for signals, or check the one that is there.
 
-    Raises ParameterError where the study has more strokes than MOST_FILES, or is refined;
+    Raises ParameterError where the study has more strokes than MAX_FILES, or is refined;
     OutputError where the folder has signals of another sweep and `overwrite` is false.
     """
     if study.levels:
         raise ParameterError("--signals: a study that is refined keeps none")
     count = int(np.prod(study.shape, dtype=np.int64))
-    if count > MOST_FILES:
-        raise ParameterError(f"--signals: {count} strokes are more than {MOST_FILES}")
+    if count > MAX_FILES:
+        raise ParameterError(f"--signals: {count} strokes are more than {MAX_FILES}")
     mark: Any = folder / "study.json"
     text = study.as_text() + "\n"
     try:

@@ -26,10 +26,10 @@ from yehu_server.util.values import choice, choices, whole
 
 Array = Any
 
-MOST_BYTES = 16 * 2**20
-MOST_STROKES = 10**8
-MOST_POINTS = 10**8  # of the finest grid
-MOST_LEVELS = 8
+MAX_BYTES = 16 * 2**20
+MAX_STROKES = 10**8
+MAX_POINTS = 10**8  # of the finest grid
+MAX_LEVELS = 8
 BORDERS = ("regimes", "helmholtz")
 KNOWN = (
     "about", "sample_rate", "duration", "instrument", "stroke", "gesture", "vary", "refine"
@@ -74,7 +74,7 @@ def read_study(path: Path, vary: Sequence[Axis] = (), instrument: Path | None = 
     of an instrument changes that of the file `instrument`. Raises ScoreError where the file cannot
     be read; ParameterError where it is wrong.
     """
-    document = Document(path, "a study", unreadable=ScoreError).read(path, MOST_BYTES)
+    document = Document(path, "a study", unreadable=ScoreError).read(path, MAX_BYTES)
     if path.suffix == ".json":
         data: Mapping[str, Any] = {"gesture": on_instrument(document.json().data, instrument)}
     else:
@@ -89,7 +89,7 @@ def read_study(path: Path, vary: Sequence[Axis] = (), instrument: Path | None = 
 
 
 def _gesture(name: str, folder: Path) -> Mapping[str, Any]:
-    return Document(name, "a gesture file").read(folder / name, MOST_BYTES).json().data
+    return Document(name, "a gesture file").read(folder / name, MAX_BYTES).json().data
 
 
 def with_axes(data: Mapping[str, Any], axes: Sequence[Axis]) -> dict[str, Any]:
@@ -122,9 +122,9 @@ def study_of(data: Any, folder: Path = Path()) -> Study:
     kept = {**table.data, "folder": str(folder.absolute())}
     study = Study(kept, fine, refine, levels, border, bow)
     with table.at():
-        if study.coarse > MOST_STROKES:
-            raise ParameterError(f"{study.coarse} strokes are more than {MOST_STROKES}")
-        if math.prod(study.shape) > MOST_POINTS:
+        if study.coarse > MAX_STROKES:
+            raise ParameterError(f"{study.coarse} strokes are more than {MAX_STROKES}")
+        if math.prod(study.shape) > MAX_POINTS:
             raise ParameterError("the finest grid has too many points")
         bow.check(fine)
     return study
@@ -152,7 +152,7 @@ def _flat(table: Mapping[str, Any], above: str = "") -> dict[str, Any]:
 def _refinement(table: Fields, axes: Sequence[Axis]) -> tuple[tuple[int, ...], int, str]:
     names = [axis.name for axis in axes]
     wanted = table.read("axes", choices, [], names)
-    levels = table.read("levels", whole, 0, 0, MOST_LEVELS)
+    levels = table.read("levels", whole, 0, 0, MAX_LEVELS)
     border = table.read("border", choice, BORDERS[0], BORDERS)
     table.refuse_others()
     return tuple(sorted(names.index(name) for name in wanted)), levels if wanted else 0, border

@@ -92,7 +92,7 @@ def players_of(
 
 def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[PartEntry]:
     """Name a part for each channel or track with notes."""
-    from yehu_server.core.engine.rig import MOST_PARTS
+    from yehu_server.core.engine.rig import MAX_PARTS
     from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
     from yehu_server.scores.ensemble_file import PartEntry
     from yehu_server.scores.reading import channels_with_notes, part_name, tracks_with_notes
@@ -109,9 +109,9 @@ def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[Par
             for channel in channels_with_notes(scores)
             if channel in chosen
         ]
-    if len(found) > MOST_PARTS:
+    if len(found) > MAX_PARTS:
         raise ParameterError(
-            f"{len(found)} tracks have notes: a stage has room for {MOST_PARTS} parts; "
+            f"{len(found)} tracks have notes: a stage has room for {MAX_PARTS} parts; "
             "an ensemble file chooses some (docs/ensemble.md)"
         )
     return found or [PartEntry("", name="nobody", channel=0)]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from yehu_server.live.options import PartOptions
     from yehu_server.playing.options import PlayingOptions
 
-MAX = 16  # engine.rig.MOST_PARTS, which takes a second to import
+MAX = 16  # engine.rig.MAX_PARTS, which takes a second to import
 
 
 def add_parts(group: Any) -> None:

@@ -42,7 +42,7 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the command; return its exit code."""
-    from yehu_server.core.engine.rig import MOST_PARTS
+    from yehu_server.core.engine.rig import MAX_PARTS
     from yehu_server.surfaces.catalogue import chosen, file_of, is_up_to_date, write
     from yehu_server.surfaces.common_layout import ALL
 
@@ -54,8 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
             f"{arguments.server!r}: expected HOST:PORT, such as {format_address(*OSC_ADDRESS)}"
         )
     part: int = ALL if arguments.part is None else arguments.part
-    if arguments.part is not None and not 1 <= part <= MOST_PARTS:
-        raise ParameterError(f"--part {part}: a stage has parts 1 to {MOST_PARTS}")
+    if arguments.part is not None and not 1 <= part <= MAX_PARTS:
+        raise ParameterError(f"--part {part}: a stage has parts 1 to {MAX_PARTS}")
     surfaces = chosen(arguments.only)
     if arguments.check:
         stale = [

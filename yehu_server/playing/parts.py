@@ -16,7 +16,7 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN, own_value
 from yehu_server.core.physics.elementary import exp2, sin_and_cos
@@ -150,8 +150,8 @@ def _move(
 def number_of_instruments(per_part: Sequence[PlayingOptions]) -> int:
     """How many instruments some parts take; raises ParameterError where a stage has fewer."""
     count = sum(map(section_size, per_part))
-    if count > MOST_PARTS:
-        raise ParameterError(f"{count} players, of all parts and sections: at most {MOST_PARTS}")
+    if count > MAX_PARTS:
+        raise ParameterError(f"{count} players, of all parts and sections: at most {MAX_PARTS}")
     return count
 
 

@@ -33,7 +33,7 @@ _ADDRESS = re.compile(r"(?:(tcp|tls|ucx|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[
 CONNECT_S = 10.0
 CHECK_EVERY_S = 2.0  # at how many workers there are
 JOBS_PER_THREAD = 4  # in flight, so that no worker waits for the next
-FEWEST_JOBS = 16
+MIN_JOBS = 16
 BATCHES = 4  # in which they are sent off
 
 
@@ -120,7 +120,7 @@ class Cluster:
             while True:
                 if time.monotonic() - checked >= CHECK_EVERY_S:
                     threads = self._reached(self._client.nthreads)
-                    room = max(FEWEST_JOBS, JOBS_PER_THREAD * len(threads))
+                    room = max(MIN_JOBS, JOBS_PER_THREAD * len(threads))
                     checked = time.monotonic()
                     if not threads and not is_warned:
                         self._warn(f"{self.address}: no worker is left; waiting for one")

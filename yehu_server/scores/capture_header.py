@@ -10,7 +10,7 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, STRINGS
 from yehu_server.core.physics.quantities import (
@@ -122,7 +122,7 @@ def read_header(table: Fields, version: int) -> SessionStart:
             start = _start(table, rate, quantities, [])
         return SessionStart((start,), bool(table.data.get("room", False)))
     starts = list[InstrumentSpec]()
-    for entry in table.tables("players", 1, MOST_PARTS):
+    for entry in table.tables("players", 1, MAX_PARTS):
         starts.append(_start(entry, rate, entry.need("quantities", _quantities), starts))
     return SessionStart(tuple(starts), table.need("room", flag))
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.errors import EnsembleError
 from yehu_server.params.table import find
 from yehu_server.playing.mapping_file import read_settings
@@ -60,7 +60,7 @@ def read_ensemble(path: Path) -> EnsembleFile:
     room = table.data.get("room", {})
     ensemble = EnsembleFile(
         path,
-        parts=tuple(_part(part, path.parent) for part in table.tables("part", 1, MOST_PARTS)),
+        parts=tuple(_part(part, path.parent) for part in table.tables("part", 1, MAX_PARTS)),
         room=() if isinstance(room, str) else _room(table.table("room")),
         room_name=room if isinstance(room, str) else None,
         room_where=document.where(("room",)),
@@ -94,7 +94,7 @@ def _part(table: Fields, folder: Path) -> PartEntry:
         preset=table.read("preset", _beside, None, folder),
         mapping=table.read("mapping", _beside, None, folder),
         instrument=table.read("instrument", lambda value: folder / line(value), None),
-        section=table.read("section", whole, None, 1, MOST_PARTS),
+        section=table.read("section", whole, None, 1, MAX_PARTS),
         seed=table.read("seed", whole, None, 0, 65535),
         pan=table.read("pan", find("/room/pan").within, None),
         distance=table.read("distance", find("/room/distance").within, None),

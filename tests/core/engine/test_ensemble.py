@@ -10,7 +10,7 @@ from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.engine import event_dispatch, mixing, sounding
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.output import SOUNDED
-from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN
 from yehu_server.errors import ParameterError
@@ -118,7 +118,7 @@ def test_one_channel_has_the_mean_of_both_and_further_ones_have_left_and_right_i
 
 
 def test_a_stage_has_room_for_1_to_16_of_one_rate_that_it_plays_itself():
-    for parts in (0, MOST_PARTS + 1):
+    for parts in (0, MAX_PARTS + 1):
         with pytest.raises(ParameterError, match=f"{parts} parts: a stage has 1 to 16"):
             Ensemble([InstrumentSpec(RATE)] * parts)
     with pytest.raises(ParameterError, match="one sample rate"):

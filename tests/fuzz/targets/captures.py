@@ -7,7 +7,7 @@ from fuzz.instrument import Instrument
 from fuzz.target import scratch, target, words, written
 
 from yehu_server.core.controls.slots import LOWER_BOUNDS, SILENCE, UPPER_BOUNDS
-from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.player.commands import KINDS, RAMP
 from yehu_server.errors import YehuError
@@ -25,13 +25,13 @@ WORDS = (
     ),
     *(f'"{kind}", '.encode() for kind in KINDS),
 )
-MOST_APPLIED = 2000
+MAX_APPLIED = 2000
 
 
 def check_beginning(beginning: SessionStart) -> None:
     """A replay begins with this check; what else it starts from is in range."""
     check_rate(beginning.rate)
-    assert 1 <= len(beginning.players) <= MOST_PARTS
+    assert 1 <= len(beginning.players) <= MAX_PARTS
     for start in beginning.players:
         assert all(find(address).clamped(value) == value for address, value in start.values.items())
         assert np.isfinite(start.bowing).all()
@@ -57,7 +57,7 @@ def check_commands(taken: Capture) -> None:
     assert (ramps["value"] <= UPPER_BOUNDS[ramps["index"]]).all()
     assert ((ramps["other"] >= 0) & (ramps["other"] <= MAX_FRAMES)).all()
     instrument = Instrument()
-    for frame, *command in commands[:MOST_APPLIED].tolist():
+    for frame, *command in commands[:MAX_APPLIED].tolist():
         instrument.now_s = frame / instrument.rate
         instrument.apply(tuple(command))
     instrument.check_player()

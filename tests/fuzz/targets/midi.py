@@ -17,7 +17,7 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import player_of
 
 PORTS = 4
-MOST_MESSAGES = 1000
+MAX_MESSAGES = 1000
 
 
 @functools.cache
@@ -57,7 +57,7 @@ def midi_messages(data: bytes) -> None:
     for number, midi_in in enumerate(midi_ins):
         feed.open(f"port {number}")
         Input(midi_in, f"port {number}", None, feed, None)
-    for _ in range(MOST_MESSAGES):
+    for _ in range(MAX_MESSAGES):
         if not program:
             break
         head = program.byte()

@@ -14,7 +14,7 @@ from yehu_server.scores.score import MAX_DURATION_H, Score
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.track import DamagedError
 
-MOST_SONGS = 3
+MAX_SONGS = 3
 NO_SONG = re.compile("there is no song|has nothing to play")
 
 
@@ -42,7 +42,7 @@ def midi_file(data: bytes) -> None:
         assert score.warnings
     else:
         assert not score.warnings
-    songs = [read_song(path, number) for number in range(1, MOST_SONGS + 1)]
+    songs = [read_song(path, number) for number in range(1, MAX_SONGS + 1)]
     resets = sum(event.message.type == "reset" for event in score.events)
     assert sum(song is not None for song in songs) <= resets + 1
 

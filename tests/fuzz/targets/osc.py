@@ -10,7 +10,7 @@ from fuzz.target import target, words
 from yehu_server.live.osc.answering import Framing, FramingError
 from yehu_server.live.osc.packets import Message, PacketError, answer, pack, unpack
 
-MOST_WRAPPED_BYTES = 60_000  # fit a packet of either framing
+MAX_WRAPPED_BYTES = 60_000  # fit a packet of either framing
 WORDS = words(
     b"#bundle\x00|/yehu/note\x00\x00|,ff\x00|,[f]|,b\x00\x00|\x00\x00\x00\x01|\xff\xff\xff"
 )
@@ -78,7 +78,7 @@ def check_wrapping(begin: bytes, packets: Iterable[bytes]) -> None:
 def check_framing(begin: bytes, data: bytes) -> None:
     """Check framing both ways; the data's first byte says how the stream is cut."""
     check_stream(begin + data[1:], 1 + int.from_bytes(data[:1], "big"))
-    content = data[1:MOST_WRAPPED_BYTES]
+    content = data[1:MAX_WRAPPED_BYTES]
     check_wrapping(begin, [b"/" + content, b"#bundle\0" + content])
 
 

@@ -30,7 +30,7 @@ from yehu_server.playing.parts import player_of
 from yehu_server.playing.player import Player
 from yehu_server.playing.preset_folders import Presets
 
-MOST_PACKETS = 200
+MAX_PACKETS = 200
 ADDRESSES = [
     *("/yehu/*", "/yehu/*/*", "/yehu/bow/[a-z", "/*/note", "/", "/yehu/{,}", "/my/fader"),
     "/yehu/subscribed",  # as another server says
@@ -146,7 +146,7 @@ def osc_calls(data: bytes) -> None:
             handler.tick()
 
         program = Program(data)
-        for _ in range(MOST_PACKETS):
+        for _ in range(MAX_PACKETS):
             if not program:
                 break
             take(packet(program, clock.time()))

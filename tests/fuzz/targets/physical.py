@@ -14,7 +14,7 @@ from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.scores.gesture import Gesture, gesture_from, read_gesture
 
-MOST_FRAMES = 50_000  # whose controls are worked out
+MAX_FRAMES = 50_000  # whose controls are worked out
 
 
 def figures(thing: Any) -> list[float]:
@@ -55,7 +55,7 @@ def gesture(data: bytes) -> None:
     read = read_gesture(written(data, "file.json"))
     check_quantities(read.quantities)
     assert read.frames >= 1
-    if read.frames <= MOST_FRAMES:
+    if read.frames <= MAX_FRAMES:
         assert np.isfinite(read.control_rows()).all()
     again = gesture_from(json.loads(json.dumps(read.source)), written(data, "file.json").parent)
     assert without_source(again) == without_source(read)

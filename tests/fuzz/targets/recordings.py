@@ -8,7 +8,7 @@ from fuzz.target import target, written
 from yehu_server.errors import ScoreError
 from yehu_server.following.recording import recording_of_file
 
-MOST_BLOCKS = 50
+MAX_BLOCKS = 50
 
 
 @target(
@@ -22,5 +22,5 @@ def followed_sound(data: bytes) -> None:
     for number, block in enumerate(recording.blocks()):
         assert block.ndim == 2
         assert block.dtype == np.float32
-        if number == MOST_BLOCKS:
+        if number == MAX_BLOCKS:
             break

@@ -15,7 +15,7 @@ from yehu_server.core.midi.events import TABLES_TO
 from yehu_server.core.player.commands import BEGIN, COMMAND
 
 RINGS = ("ring", "midi_ring", "page_ring", "sound_ring")  # by writer
-MOST_EVENTS = 64
+MAX_EVENTS = 64
 BLOCK = 64
 
 
@@ -42,7 +42,7 @@ def event_ring(data: bytes) -> None:
     ring, mail = rig[RINGS[writer]][0], rig["mail"][0]
     place = posted = int(mail["posted"][writer, 0])
     now = instrument.frame
-    for _ in range(MOST_EVENTS):
+    for _ in range(MAX_EVENTS):
         if not program:
             break
         how = program.byte()
@@ -67,7 +67,7 @@ def event_ring(data: bytes) -> None:
     assert instrument.frame == now + out.size
     drained, pending = int(mail["drained"][writer, 0]), int(mail["pending_events"])
     assert drained == at or at - drained <= size
-    assert 0 <= pending <= MOST_EVENTS + size
+    assert 0 <= pending <= MAX_EVENTS + size
     check_a_note_is_heard(instrument)
 
 

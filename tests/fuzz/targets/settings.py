@@ -14,7 +14,7 @@ from interpreted import Leader
 
 from yehu_server import cli
 from yehu_server.cli.config import parse
-from yehu_server.core.engine.rig import MOST_PARTS
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.midi.events import CONTROL
 from yehu_server.core.midi.tables import MAX_BINDS
 from yehu_server.errors import EnsembleError, MappingError, ParameterError, PresetError
@@ -121,7 +121,7 @@ def preset(data: bytes) -> None:
 def ensemble(data: bytes) -> None:
     """An ensemble has parts that play something, values in range; or is an EnsembleError."""
     read = read_ensemble(written(data, "ensemble.toml"))
-    assert 1 <= len(read.parts) <= MOST_PARTS
+    assert 1 <= len(read.parts) <= MAX_PARTS
     for part in read.parts:
         assert part.channel is not None or part.track is not None
         assert "\n" not in (part.name or "")
@@ -141,7 +141,7 @@ MAPPING_WORDS = (
 )
 
 
-MOST_WRITTEN = 4000  # characters; tomlkit is slow
+MAX_WRITTEN = 4000  # characters; tomlkit is slow
 
 
 def meant(contents: MappingFile) -> MappingFile:
@@ -178,7 +178,7 @@ def check(contents: MappingFile, path: Path, text: str) -> None:
             assert 0.0 <= bind.to_unit(value) <= 1.0, (bind, value)
         bind.terms, bind.curve_name  # noqa: B018 - are worked out as they are read
     check_controls(contents.binds)
-    if len(text) > MOST_WRITTEN:
+    if len(text) > MAX_WRITTEN:
         return
     for again in (as_toml(contents), canonical(contents, text), edited(contents, text, [], [])):
         assert meant(read_mapping_file(path, again)) == meant(contents)

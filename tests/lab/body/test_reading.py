@@ -87,7 +87,7 @@ def test_files_that_claim_or_hold_too_much_are_refused_before_they_are_read(tmp_
     silence.write_bytes(data)
     with pytest.raises(MeasurementError, match="has 48000000 samples, more than"):
         read([silence], channels="force=1,velocity=1")
-    monkeypatch.setattr(tables, "MOST_NUMBERS", 1000)
+    monkeypatch.setattr(tables, "MAX_NUMBERS", 1000)
     (tmp_path / "tap.csv").write_text("time_s,force_N,velocity_m/s\n" + "0,0,0\n" * 400)
     with pytest.raises(MeasurementError, match="has more than 1000 numbers"):
         read([tmp_path / "tap.csv"])

@@ -14,7 +14,7 @@ from pythonosc import slip
 from yehu_server.live.osc.answering import Framing, FramingError
 
 ESC, END = b"\xdb", b"\xc0"
-MOST_BYTES = 65_535  # of a packet: as long as UDP allows
+MAX_BYTES = 65_535  # of a packet: as long as UDP allows
 
 
 def prefixed(packets: Iterable[bytes]) -> bytes:
@@ -63,9 +63,9 @@ def test_answers_are_framed_as_the_peer_frames(packet):
 
 
 def test_a_packet_may_be_as_long_as_is_allowed_and_no_longer():
-    longest = b"/" * MOST_BYTES
+    longest = b"/" * MAX_BYTES
     assert read(Framing(), prefixed([longest])) == [longest]
-    for packet in (longest, b"/" + END * (MOST_BYTES - 1)):  # SLIP sends an END as two bytes
+    for packet in (longest, b"/" + END * (MAX_BYTES - 1)):  # SLIP sends an END as two bytes
         assert read(Framing(), slipped([packet])) == [packet]
     with pytest.raises(FramingError, match="too long"):
         read(Framing(), prefixed([longest + b"/"])[:4])
@@ -78,7 +78,7 @@ def test_a_stream_that_never_ends_a_packet_is_given_up(start):
     framing = Framing()
     with pytest.raises(FramingError, match="too long"):
         read(framing, start, *([b"x" * 65536] * 64))
-    assert len(framing._received) <= 3 * MOST_BYTES
+    assert len(framing._received) <= 3 * MAX_BYTES
 
 
 STUN = bytes.fromhex("0003 0000 2112a442") + b"0123456789ab"  # a TURN allocation request

@@ -11,7 +11,7 @@ from live.page.browser import drive
 pytestmark = pytest.mark.slow
 
 RANGE_DB = 18.0
-MOST_BYTES = 350_000
+MAX_BYTES = 350_000
 
 
 @pytest.fixture(scope="module")
@@ -47,4 +47,4 @@ def test_it_plays_without_a_network(found) -> None:
 
 def test_the_whole_page_is_small(written) -> None:
     files = [file for file in written.rglob("*") if file.is_file()]
-    assert sum(len(gzip.compress(file.read_bytes())) for file in files) <= MOST_BYTES
+    assert sum(len(gzip.compress(file.read_bytes())) for file in files) <= MAX_BYTES

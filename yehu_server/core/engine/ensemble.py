@@ -13,7 +13,7 @@ import numpy as np
 
 from yehu_server.core.engine import native
 from yehu_server.core.engine.instrument import Instrument, new_memory
-from yehu_server.core.engine.rig import MOST_PARTS, RIG_BYTES, memory_bytes
+from yehu_server.core.engine.rig import MAX_PARTS, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.stage.record import STAGE, TAPE, clear_stage, prepare_stage
 from yehu_server.errors import ParameterError
@@ -211,5 +211,5 @@ def check_parts(parts: int) -> None:
     ParameterError
         Where it has not.
     """
-    if not 1 <= parts <= MOST_PARTS:
-        raise ParameterError(f"{parts} parts: a stage has 1 to {MOST_PARTS}")
+    if not 1 <= parts <= MAX_PARTS:
+        raise ParameterError(f"{parts} parts: a stage has 1 to {MAX_PARTS}")

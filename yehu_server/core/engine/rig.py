@@ -33,7 +33,7 @@ from yehu_server.core.player.record import PLAYER
 from yehu_server.core.stage.record import STAGE
 from yehu_server.core.stage.seat import SEAT
 
-MOST_PARTS = 16
+MAX_PARTS = 16
 
 RIG = lined_up(
     [

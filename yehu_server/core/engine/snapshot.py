@@ -42,7 +42,7 @@ from yehu_server.core.player.record import PLAYER
 from yehu_server.core.stage.record import STAGE
 
 NO_STRING = -1
-LEAST_PRESS = 1e-6  # N; below, a finger is lifted
+MIN_PRESS = 1e-6  # N; below, a finger is lifted
 
 SNAPSHOT = np.dtype(
     [
@@ -117,7 +117,7 @@ def snapshot(rig: Any, into: Any) -> None:
     for j in range(MAX_FINGERS):
         out.finger_x[j] = c.value[FINGER_POSITION[j]]
         press = c.value[FINGER_PRESS[j]]
-        out.finger_press[j] = press if press > LEAST_PRESS else 0.0
+        out.finger_press[j] = press if press > MIN_PRESS else 0.0
     out.upper = out.lower = 0.0
     if out.frequency > 0.0:  # not NaN
         Z, grip = math.sqrt(m.T[string] * m.rho_A[string]), m.mu_S - m.mu_C

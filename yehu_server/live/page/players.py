@@ -35,7 +35,7 @@ from yehu_server.playing.delay import Arrivals
 FIRST, CHANNELS = 1 << 16, 1 << 12  # channels of the first page, and of each
 LOWEST = -(CHANNELS // 2)  # of them, as a page numbers its own
 AHEAD_S = 3.0  # by which a command may lie ahead
-MOST_EVENTS = 3  # that a command comes to
+MAX_EVENTS = 3  # that a command comes to
 FIRST_PART = 0
 VALUE, KEEP_HELD = 3, 1.0  # the column of a command, and what it is of a RELEASE
 OWNER_ONLY = sorted(INDEX[param.address] for param in TABLE if is_owners(param))
@@ -73,7 +73,7 @@ class PagePlayers:
         while posted and posted[0] <= taken:
             posted.popleft()
         room = self._view.room(self._rigs[part], page) - len(posted)
-        return room >= MOST_EVENTS * commands
+        return room >= MAX_EVENTS * commands
 
     def post(self, page: int, part: int, commands: Array, arrived_ns: int) -> None:
         """Post commands of a page, for the frames that they name or for now.

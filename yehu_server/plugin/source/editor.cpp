@@ -22,7 +22,7 @@ constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 220, CHOOSER_WIDTH = 216, CHOOSE
 constexpr float ARROW = 26, ZOOM_X = 628, ZOOM_Y = 20;
 
 constexpr int CHOSEN[] = {PRESET, MAPPING, TUNING};
-constexpr double LEAST_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from one snapshot to the next */
+constexpr double MIN_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from one snapshot to the next */
 constexpr float SWING = 26, HAIR_LENGTH = 108;
 constexpr double SILENT = 1e-4, CERTAIN = 0.8, TWICE = 1.5; /* as the page has them */
 constexpr int PERCENTS[] = {75, 100, 125, 150, 200, 250, 300};
@@ -150,7 +150,7 @@ bool Editor::follow() {
     if (rests && is_at_rest) return has_changed;
     is_at_rest = rests;
     latest = (latest + 1) % SHAPES;
-    swing = (float)fmax(LEAST_SWING, KEPT * swing);
+    swing = (float)fmax(MIN_SWING, KEPT * swing);
     for (int string = 0; string < STRINGS; string++)
         for (int i = 0; i < POINTS; i++) shapes[string][latest][i] = (float)seen.shapes[string][i];
     return true;

@@ -8,7 +8,7 @@ namespace yehu {
 
 namespace {
 constexpr int HALF = 32;          /* of the taps, where the rate rises */
-constexpr int MOST_PHASES = 512;
+constexpr int MAX_PHASES = 512;
 constexpr int64_t PIECE = 256;    /* frames made at once, and */
 constexpr int64_t HEARD = 1024;   /* read at once, at most */
 constexpr double PASSED = 0.93;   /* of the lower rate's band: to 20.5 kHz at 44.1 kHz */
@@ -31,7 +31,7 @@ bool Resampler::prepare(int64_t from_rate, int64_t to_rate) {
     if (!is_needed()) return true;
     const double fall = from > to ? (double)from / (double)to : 1.0;
     half = 2 * (int)ceil(HALF / 2 * fall), taps = 2 * half;
-    phases = (int)(to < MOST_PHASES ? to : MOST_PHASES);
+    phases = (int)(to < MAX_PHASES ? to : MAX_PHASES);
     piece = PIECE;
     while (piece > 1 && piece * from / to + 2 > HEARD) piece /= 2;
     table = (float *)malloc(sizeof(float) * (size_t)((phases + 2) * taps));

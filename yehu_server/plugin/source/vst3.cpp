@@ -9,7 +9,7 @@ namespace yehu {
 
 namespace {
 const v3_tuid identity = YEHU_VST3_ID;
-constexpr int32_t MANY = 0x7FFFFFFF, MOST_STATE = 1 << 16;
+constexpr int32_t MANY = 0x7FFFFFFF, MAX_STATE = 1 << 16;
 } /* namespace */
 
 void write_text(const char *text, int16_t *into) {
@@ -46,11 +46,11 @@ uint32_t unref(Vst3 &plugin) {
 }
 
 bool read_state(Vst3 &plugin, v3_bstream **stream) {
-    char *text = (char *)malloc(MOST_STATE);
+    char *text = (char *)malloc(MAX_STATE);
     if (!text) return false;
     int32_t length = 0;
-    for (int32_t more = 0; length < MOST_STATE; length += more)
-        if (v3_cpp_obj(stream)->read(stream, text + length, MOST_STATE - length, &more) != V3_OK || more <= 0)
+    for (int32_t more = 0; length < MAX_STATE; length += more)
+        if (v3_cpp_obj(stream)->read(stream, text + length, MAX_STATE - length, &more) != V3_OK || more <= 0)
             break;
     const bool is_right = plugin.instrument.load(text, (size_t)length);
     free(text);

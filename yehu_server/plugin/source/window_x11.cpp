@@ -14,7 +14,7 @@ namespace yehu {
 
 namespace {
 constexpr uint32_t EMBEDDED[] = {0, 1}; /* version of XEmbed; that it is to be seen */
-constexpr int MOST_BYTES = 1 << 17;     /* of a picture in one request */
+constexpr int MAX_BYTES = 1 << 17;     /* of a picture in one request */
 constexpr int LEFT_BUTTON = 1, WHEEL_UP = 4, WHEEL_DOWN = 5;
 
 #define YEHU_XCB(each)                                                                             \
@@ -137,7 +137,7 @@ void Window::show(bool is_shown) {
 }
 
 void Window::put(const uint32_t *pixels, int width, int height) {
-    const int rows = MOST_BYTES / (4 * width);
+    const int rows = MAX_BYTES / (4 * width);
     for (int y = 0; y < height; y += rows) {
         const int now = height - y < rows ? height - y : rows;
         native->x->put_image(native->connection, XCB_IMAGE_FORMAT_Z_PIXMAP, native->picture, native->pen, (uint16_t)width,

@@ -13,7 +13,7 @@ SHARPS = "FCGDAEB"  # in the order in which keys get them
 MODES = {"maj": 0, "ion": 0, "mix": -1, "dor": -2, "min": -3, "m": -3, "aeo": -3, "phr": -4,
          "loc": -5, "lyd": 1}  # fmt: skip
 ALTERS = {"^^": 2.0, "^": 1.0, "=": 0.0, "_": -1.0, "__": -2.0}
-MOST_ORDER = 200  # parts as they are played
+MAX_ORDER = 200  # parts as they are played
 
 DECORATIONS: Mapping[str, tuple[str, float | None]] = {
     "trill": ("trill", None), "lowermordent": ("mordent", None), "mordent": ("mordent", None),
@@ -131,6 +131,6 @@ def order_of_parts(text: str) -> list[str]:
         elif sign.isalpha():
             last = [sign]
             stack[-1] += last
-        if sum(map(len, stack)) > MOST_ORDER:
+        if sum(map(len, stack)) > MAX_ORDER:
             break
-    return [each for level in stack for each in level][:MOST_ORDER]
+    return [each for level in stack for each in level][:MAX_ORDER]

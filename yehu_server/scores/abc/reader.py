@@ -20,7 +20,7 @@ from yehu_server.scores.score import naming, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_PARTS, Written
 
-MOST_BYTES = 4 << 20
+MAX_BYTES = 4 << 20
 MUSIC_FIELDS = "KLMQ"
 _FIELD = re.compile(r"([A-Za-z+]):(?![|:])\s*(.*)")  # C:| is a note at the end of a repeat
 _NAME = re.compile(r'(?:name|nm)="([^"]*)"')
@@ -33,7 +33,7 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
     one.
     """
     with naming(path):
-        head, tunes = _tunes(_decoded(read_score_bytes(path, MOST_BYTES)))
+        head, tunes = _tunes(_decoded(read_score_bytes(path, MAX_BYTES)))
         if not tunes:
             raise ScoreError("has no tune of ABC, which begins with X:")
         number = song or 1

@@ -19,7 +19,7 @@ from yehu_server.scores.written.words import meaning_of
 MIDDLE_C = 60.0
 TIMES = {2: 3, 3: 2, 4: 3, 6: 2, 8: 3}  # of tuplets; others depend on the metre
 LONGEST = 64  # quarters of a note
-MOST_BARS_REST = 1000
+MAX_BARS_REST = 1000
 LENGTH = r"\d*/*\d*"
 NOTE = rf"(\^\^|\^|__|_|=)?([A-Ga-g])([',]*)({LENGTH})(-?)"
 TOKEN = re.compile(
@@ -139,7 +139,7 @@ class VoiceReader:
             self._add([], _length(found["rest_length"]) * self.unit)
         elif kind == "bars":
             self._end_bar()
-            for _ in range(min(int(found["bars_count"][:5] or 1), MOST_BARS_REST)):
+            for _ in range(min(int(found["bars_count"][:5] or 1), MAX_BARS_REST)):
                 self._at = self._metre or Fraction(4)
                 self._end_bar()
         elif kind == "tuplet":

@@ -9,7 +9,7 @@ import threading
 import pytest
 
 from yehu_server.util import retry
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 from yehu_server.util.retry import LONGEST_GAP_S, AwakeTime, Backoff, run_forever
 
 TOO_MANY = OSError(errno.EMFILE, os.strerror(errno.EMFILE), "/somewhere")
@@ -59,7 +59,7 @@ def test_work_outlasts_errors_and_says_so_once_until_all_was_well(monkeypatch, e
     work = Work(monkeypatch, None, error, error, error, None, error)
     run_forever(work.turn, work.ending, 0.0, "work", work.report)
     assert work.turns == 7
-    assert work.said == [f"work: {why(error)}; trying again"] * 2
+    assert work.said == [f"work: {error_reason(error)}; trying again"] * 2
 
 
 def test_work_outlasts_that_no_error_can_be_reported(monkeypatch):

@@ -29,7 +29,7 @@ def test_a_file_of_ones_own_is_shown_and_checked(mappings, tmp_path):
     assert "mine: [my] pedals" in out
     for part in ("cc 4", "200 ms", "10 ms", "/playing/attack = 25 ms"):
         assert part in out
-    assert mappings("check", path)[:2] == (0, f"{path}: right, 1 binds\n")
+    assert mappings("check", path)[:2] == (0, f"{path}: valid, 1 binds\n")
 
 
 # ---------------------------------------------------------------- files of ones own
@@ -49,7 +49,7 @@ def test_all_that_is_wrong_with_files_is_reported_line_by_line(mappings, tmp_pat
     right.write_text('base = "keyboard"\n')
     code, out, err = mappings("check", wrong, right, tmp_path / "none.toml")
     assert code == 2
-    assert out == f"{right}: right, {len(load('keyboard').binds)} binds\n"
+    assert out == f"{right}: valid, {len(load('keyboard').binds)} binds\n"
     lines = err.splitlines()
     for line, place in zip(lines, (":1: name", ":3: bind 1", ":5: bind 1", ""), strict=True):
         assert line.startswith("yehu-server: ")

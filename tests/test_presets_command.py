@@ -53,14 +53,14 @@ def test_all_that_is_wrong_with_each_file_is_reported(command, tmp_path):
     right, first, second = (tmp_path / f"{name}.toml" for name in ("right", "first", "second"))
     right.write_text(HEAD + '[values]\n"/playing/vibrato" = 5\n"/a/b" = 3\n')
     code, out, err = command("presets", "check", right)
-    assert (code, out) == (0, f"{right}: right, 1 values\n")
+    assert (code, out) == (0, f"{right}: valid, 1 values\n")
     assert "unknown parameter '/a/b'" in err
     values = '"/playing/vibrato" = 500\n"/bow/speed" = 1\n"/playing/volume" = "loud"\n'
     first.write_text(f"{HEAD}program = 0\nabout = 3\nwho = 1\n[values]\n{values}")
     second.write_text(HEAD + "values = 3\nprogram = 129\n")
     right.write_text(HEAD)
     code, out, err = command("presets", "check", first, second, right, tmp_path / "missing.toml")
-    assert (code, out) == (2, f"{right}: right, 0 values\n")
+    assert (code, out) == (2, f"{right}: valid, 0 values\n")
     *lines, missing = err.splitlines()
     assert "missing.toml: No such file" in missing
     assert [line.split(": ")[1] for line in lines] == [

@@ -169,4 +169,4 @@ def test_an_answer_that_is_no_result_is_an_error_of_its_score(songs, rendered):
     code, _, err = rendered(Strange)
     assert code == 1
     told = [line.partition(".mid: ")[2] for line in err.splitlines()]
-    assert told == ["a worker answered with what is no result"] * 5
+    assert told == ["a worker's answer is not a result"] * 5

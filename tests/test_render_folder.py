@@ -261,7 +261,7 @@ def test_a_wrong_call_gets_one_line_and_makes_nothing(subtests, refused, tmp_pat
         ("in -o out --format flac --subtype float", "cannot hold float"),
         ("in -o out --mapping none.toml", "none.toml"),
         ("bare -o out", "bare: has no scores"),
-        ("in -o taken", "is no manifest of yehu-server; move it away"),
+        ("in -o taken", "is not a manifest of yehu-server; move it away"),
     ]:
         with subtests.test(words):
             assert wrong in refused("render", *words.split())

@@ -63,7 +63,7 @@ def test_what_is_played_is_written_as_midi(command, refused, tune, tmp_path):
     assert "exists" in refused(*words)
     assert command(*words, "--overwrite")[0] == 0
     same = ("score", "show", target, "--export-midi", target)
-    assert "is no written score" in refused(*same)
+    assert "is not a written score" in refused(*same)
     over = ("score", "show", tune, "--export-midi", tune, "--overwrite")
     assert "would overwrite an input" in refused(*over)
 

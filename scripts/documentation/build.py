@@ -15,7 +15,7 @@ from notebooks import ROOT, RUN, run_all
 from yehu_server.cli.converters import port
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.page.site import server_of, url_of
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 
 MARK = ".yehu-site"  # lists the files of a site, which the next one may replace
 PORT = 8011
@@ -70,7 +70,7 @@ def build(folder: Path, settings: Path = ROOT / "mkdocs.yml", *, runs: bool = Fa
             site.rename(folder)
         return sum(name.endswith(".html") for name in files)
     except OSError as error:
-        raise OutputError(f"{folder}: {why(error)}") from error
+        raise OutputError(f"{folder}: {error_reason(error)}") from error
 
 
 def _files_of(folder: Path) -> set[str]:

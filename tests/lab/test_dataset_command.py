@@ -233,7 +233,7 @@ def test_a_wrong_call_gets_one_line_and_makes_nothing(refused, tmp_path, monkeyp
     for words, wrong in (
         ("none.toml -o out", "none.toml: No such file"),
         ("bad.toml -o out", "bad.toml: "),
-        ("d.toml -o full", "is not empty, and is no data set"),
+        ("d.toml -o full", "is not empty, and is not a data set"),
         ("d.toml -o file", "is a file; name a folder"),
         ("d.toml -o none/out", "does not exist"),
         ("d.toml -o out --count 0", "0 is not 1 or more"),

@@ -60,5 +60,5 @@ def test_a_file_that_is_not_exported_is_refused_in_a_line(tune):
         read_written(tune)
     (tune.parent / "made.musicxml").write_text("<score/>", encoding="utf-8")
     install(tune.parent, "mscore")
-    with pytest.raises(ScoreError, match=r"^\S*tune\.mscz: is no MusicXML score"):
+    with pytest.raises(ScoreError, match=r"^\S*tune\.mscz: is not a MusicXML score"):
         read_written(tune)

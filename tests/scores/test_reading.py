@@ -43,7 +43,7 @@ def test_a_midi_file_of_any_name_is_read_as_before_and_has_no_marks_to_show(tmp_
         path = shutil.copy(TUNE, tmp_path / name)
         assert not is_written(path), name
         assert read_any(path).events == read_score(TUNE).events, name
-    with pytest.raises(ScoreError, match="is no written score"):
+    with pytest.raises(ScoreError, match="is not a written score"):
         read_written(TUNE)
 
 

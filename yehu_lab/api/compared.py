@@ -15,7 +15,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.following.recording import recording_of_file
 from yehu_server.params.table import HIGHEST_A4, LOWEST_A4
 from yehu_server.plot.axes import ABOVE, figure_of
-from yehu_server.plot.rendered import ASKED, GRID, HEARD, label_notes
+from yehu_server.plot.sound_panels import ASKED, GRID, HEARD, label_notes
 from yehu_server.plot.sounds import plot_data_of
 from yehu_server.rendering.plot_data import TOP_HZ, PlotData
 

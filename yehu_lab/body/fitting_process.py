@@ -16,7 +16,7 @@ from yehu_lab.body.body_file import Fit
 from yehu_lab.body.fitting import fit
 from yehu_lab.body.measurement import Measurement
 from yehu_server.errors import YehuError
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 from yehu_server.util.processes import python_command
 
 THREADS = "OPENBLAS_NUM_THREADS"
@@ -36,7 +36,9 @@ def fit_in_process(measurement: Measurement, **how: Any) -> Fit:
             check=False,
         )
     except OSError as error:
-        raise YehuError(f"the process that fits a body cannot be started: {why(error)}") from error
+        raise YehuError(
+            f"the process that fits a body cannot be started: {error_reason(error)}"
+        ) from error
     if done.returncode != 0:
         raise YehuError(f"the process that fits a body ended with code {done.returncode}")
     found = pickle.loads(done.stdout)  # noqa: S301 - written below

@@ -15,7 +15,7 @@ import numpy as np
 from yehu_lab.body.curve import KINDS, Curve, Floats, to_mobility
 from yehu_lab.body.modes import mode_columns, stacked
 from yehu_server.errors import MeasurementError
-from yehu_server.util.extras import need
+from yehu_server.util.extras import require_package
 
 DOUBTFUL = 0.97  # share of the real part that is above zero
 LINES = 300  # of the measurement, that are checked
@@ -35,7 +35,7 @@ def check_admittance(curve: Curve, kind: str) -> list[str]:
 
     Raises MeasurementError where it is none: of another kind, of the wrong sign, in other units.
     """
-    need("scipy", "the body workshop", "body")
+    require_package("scipy", "the body workshop", "body")
     _check_numbers(curve, "admittance")
     misfit, other, sign = _likeliest(curve, kind)
     if (other, sign) != (kind, 1.0):
@@ -43,8 +43,8 @@ def check_admittance(curve: Curve, kind: str) -> list[str]:
     share = positive_share(curve.values)
     if misfit > TOO_FAR:
         raise MeasurementError(
-            f"as {kind} this is no admittance of one point, made by masses on springs: hammer and "
-            "sensor belong at the same point, in the same direction, without a delay"
+            f"as {kind} this is not the admittance of one point, made by masses on springs: hammer "
+            "and sensor belong at the same point, in the same direction, without a delay"
         )
     peak = float(np.abs(curve.values).max())
     _check_size(peak, POSSIBLE, "admittance", "s/kg", "mm, or of full scale")
@@ -90,7 +90,7 @@ def positive_share(values: Any) -> float:
 def _check_size(peak: float, bounds: tuple[float, float], what: str, unit: str, units: str) -> None:
     if not bounds[0] <= peak <= bounds[1]:
         raise MeasurementError(
-            f"{what}: a peak of {peak:.3g} {unit} is no fiddle's; is something given in {units}?"
+            f"{what}: a peak of {peak:.3g} {unit} is not a fiddle's; is something given in {units}?"
         )
 
 

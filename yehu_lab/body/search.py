@@ -14,7 +14,7 @@ import numpy as np
 
 from yehu_lab.body.curve import Complexes, Floats, interpolated
 from yehu_lab.body.modes import Modes, Numbers, Problem, Step, step_at
-from yehu_server.util.extras import need
+from yehu_server.util.extras import require_package
 
 HIGHEST_ORDER = 40  # of the polynomials; each order gives candidates
 MAX_LINES = 4000  # of the even grid that the method needs
@@ -41,7 +41,7 @@ def starting_poles(frequency_hz: Floats, mobility: Complexes) -> tuple[Floats, F
     even grid, so an uneven one is interpolated. Poles of different orders that agree are given
     once.
     """
-    need("sdypy.EMA", "the body workshop", "body")
+    require_package("sdypy.EMA", "the body workshop", "body")
     from sdypy.EMA import Model
 
     lo, hi = float(frequency_hz[0]), float(frequency_hz[-1])
@@ -75,7 +75,7 @@ class Search:
     """The search for one measured admittance."""
 
     def __init__(self, problem: Problem) -> None:
-        need("scipy", "the body workshop", "body")
+        require_package("scipy", "the body workshop", "body")
         self.problem = problem
         self.wanted = problem.wanted
         lo, hi = float(problem.frequency_hz[0]), float(problem.frequency_hz[-1])

@@ -13,7 +13,7 @@ import numpy as np
 from yehu_lab.body.curve import Floats
 from yehu_lab.body.tap import Tap
 from yehu_server.core.physics.quantities import Body, measured_body
-from yehu_server.util.extras import need
+from yehu_server.util.extras import require_package
 
 OVER = 8  # samples computed for one that is kept
 BLOCK = 512  # samples
@@ -45,7 +45,7 @@ def made_taps(
     newtons, contact_s : float
         Peak of the force (N), and how long the hammer touches (s); a little different each time.
     """
-    need("scipy", "the body workshop", "body")
+    require_package("scipy", "the body workshop", "body")
     body = body or measured_body()
     random = np.random.default_rng(seed)
     taps = []

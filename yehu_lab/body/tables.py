@@ -25,7 +25,7 @@ from yehu_lab.body.tap import (
     parse_heading,
 )
 from yehu_server.errors import MeasurementError
-from yehu_server.util.files import MAX_TEXT_BYTES, read_lines, why
+from yehu_server.util.files import MAX_TEXT_BYTES, error_reason, read_lines
 
 MIN_LINES = 20
 MAX_NUMBERS = 2**23
@@ -51,7 +51,7 @@ def read_table(
     try:
         headings, numbers = _numbers(path, _lines(path))
     except OSError as error:
-        raise MeasurementError(f"{path}: {why(error)}") from error
+        raise MeasurementError(f"{path}: {error_reason(error)}") from error
     except UnicodeDecodeError as error:
         raise MeasurementError(f"{path}: not a table of text") from error
     first = headings[0].lower()

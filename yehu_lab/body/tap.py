@@ -15,7 +15,14 @@ import numpy as np
 
 from yehu_lab.body.curve import Floats
 from yehu_server.errors import MeasurementError
-from yehu_server.util.files import anything, make_folder, nothing, open_regular, replacing, why
+from yehu_server.util.files import (
+    error_reason,
+    make_folder,
+    open_regular,
+    replace_any,
+    replace_none,
+    replacing,
+)
 
 # What a channel may be; all but the force are responses.
 QUANTITIES = ("force", "velocity", "acceleration", "displacement", "pressure")
@@ -241,7 +248,7 @@ def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
                 )
             samples = file.read(dtype="float64", always_2d=True)
     except OSError as error:
-        raise MeasurementError(f"{path}: {why(error)}") from error
+        raise MeasurementError(f"{path}: {error_reason(error)}") from error
     except soundfile.LibsndfileError as error:
         raise MeasurementError(f"{path}: not a sound file ({error.error_string})") from error
     return cut(float(rate), by_quantity(channels, samples), path.name)
@@ -268,7 +275,7 @@ def write_taps(
     files = [folder / f"tap{i + 1}.wav" for i in range(len(taps))]
     for file, row, tap in zip(files, columns, taps, strict=True):
         samples = np.stack([values / scale for values, scale in zip(row, scales, strict=True)], 1)
-        may_replace = anything if overwrite else nothing
+        may_replace = replace_any if overwrite else replace_none
         with replacing(file, may_replace) as partial, partial.open("wb") as stream:
             soundfile.write(stream, samples, round(tap.rate), SUBTYPE, format="WAV")
     channels = ",".join(f"{name}={scale:g}" for name, scale in zip(names, scales, strict=True))

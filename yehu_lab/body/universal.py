@@ -14,8 +14,8 @@ from yehu_lab.body.curve import RADIATION, Curve
 from yehu_lab.body.tables import Response, rising
 from yehu_lab.body.tap import Tap, cut
 from yehu_server.errors import MeasurementError
-from yehu_server.util.extras import need
-from yehu_server.util.files import read_bytes, why
+from yehu_server.util.extras import require_package
+from yehu_server.util.files import error_reason, read_bytes
 
 ENDINGS = (".uff", ".unv", ".uf", ".bunv")
 MAX_BYTES = 256 * 2**20
@@ -46,13 +46,13 @@ def read_universal(path: Path, kind: str | None) -> list[Tap] | list[Response]:
 
 
 def _sets(path: Path) -> list[dict[str, Any]]:
-    need("pyuff", "the body workshop", "body")
+    require_package("pyuff", "the body workshop", "body")
     import pyuff
 
     try:
         read_bytes(path, MAX_BYTES)  # the library reads pipes and directories, or tries to
     except OSError as error:
-        raise MeasurementError(f"{path}: {why(error)}") from error
+        raise MeasurementError(f"{path}: {error_reason(error)}") from error
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
             warnings.simplefilter("ignore")

@@ -34,7 +34,7 @@ from yehu_server.cli.terminal import compile_all, print_report, progress_bar, wa
 from yehu_server.errors import OutputError, ParameterError
 from yehu_server.rendering import build_records
 from yehu_server.rendering.build_records import HIDDEN, check_manifest
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 from yehu_server.util.source_key import key_of
 
 if TYPE_CHECKING:
@@ -119,9 +119,9 @@ def _check_folder(folder: Path) -> None:
     except NotADirectoryError:
         raise OutputError(f"{folder}: is a file; name a folder") from None
     except OSError as error:
-        raise OutputError(f"{folder}: {why(error)}") from error
+        raise OutputError(f"{folder}: {error_reason(error)}") from error
     if is_other:
-        raise OutputError(f"{folder}: is not empty, and is no data set; name a new folder")
+        raise OutputError(f"{folder}: is not empty, and is not a data set; name a new folder")
 
 
 def _key(description: str) -> str:

@@ -31,7 +31,7 @@ from yehu_server.cli.arguments import (
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar
 from yehu_server.errors import ParameterError
-from yehu_server.util.files import anything, check_free, check_target, nothing
+from yehu_server.util.files import check_free, check_target, replace_any, replace_none
 
 
 def add_to(commands: Any) -> None:
@@ -164,7 +164,7 @@ def show(arguments: argparse.Namespace) -> int:
         check_picture(output, "a picture", overwrite=arguments.overwrite)
     else:
         check_target(output)
-        check_free(output, anything if arguments.overwrite else nothing)
+        check_free(output, replace_any if arguments.overwrite else replace_none)
     result = Result.load(arguments.result)
     if output.suffix == ".png":
         write_picture(result, output, arguments.column, overwrite=arguments.overwrite)

@@ -173,7 +173,7 @@ def _splits(table: Fields) -> tuple[tuple[str, float], ...]:
         return (("train", 1.0),)
     for name in table.data:
         if not PLAIN_NAME.fullmatch(name):
-            table.add_error(name, "is no plain name for a folder")
+            table.add_error(name, "is not a plain folder name")
     if len({name.casefold() for name in table.data}) < len(table.data):
         table.add_error("", "names that differ in no more than capitals")
     weights = table.each(lambda _, value: number(value))

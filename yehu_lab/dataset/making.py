@@ -210,5 +210,5 @@ def _checked(part: Part, returned: Any) -> tuple[list[Line], dict[str, bytes]]:
         if not files.keys() <= set(part.names) or any(type(x) is not bytes for x in files.values()):
             raise ValueError  # noqa: TRY301
     except (KeyError, TypeError, ValueError, RecursionError) as error:
-        raise OutputError("a worker answered with what are no sounds") from error
+        raise OutputError("a worker's answer is not a result") from error
     return lines, files

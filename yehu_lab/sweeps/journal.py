@@ -21,7 +21,7 @@ from yehu_lab.sweeps.study import Study
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.errors import OutputError
 from yehu_server.util import __version__
-from yehu_server.util.files import open_regular, why
+from yehu_server.util.files import error_reason, open_regular
 
 Array = Any
 
@@ -92,7 +92,7 @@ class Journal(Done):
                 self._file.write(_header(key))
                 self._file.flush()
         except OSError as error:
-            raise OutputError(f"{self.path}: cannot write: {why(error)}") from error
+            raise OutputError(f"{self.path}: cannot write: {error_reason(error)}") from error
 
     def add(self, numbers: Array, findings: Array) -> None:
         """Add points, safe against the end of this process; raises OutputError."""
@@ -101,7 +101,7 @@ class Journal(Done):
             self._file.write(HEAD.pack(len(numbers), zlib.crc32(payload)) + payload)
             self._file.flush()
         except OSError as error:
-            raise OutputError(f"{self.path}: cannot write: {why(error)}") from error
+            raise OutputError(f"{self.path}: cannot write: {error_reason(error)}") from error
         super().add(numbers, findings)
 
     def close(self, *, remove: bool = False) -> None:

@@ -21,8 +21,8 @@ from yehu_lab.sweeps.study import Study, study_of
 from yehu_server.errors import ParameterError
 from yehu_server.simulation.labels import as_data, as_json, hash_of
 from yehu_server.util import __version__
-from yehu_server.util.extras import need
-from yehu_server.util.files import anything, replacing
+from yehu_server.util.extras import require_package
+from yehu_server.util.files import replace_any, replacing
 from yehu_server.util.npz_file import read_npz
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ class Result:
         ParameterError
             Where xarray is missing.
         """
-        need("xarray", "to_xarray", "lab")
+        require_package("xarray", "to_xarray", "lab")
         import xarray
 
         names = tuple(self.axes)
@@ -180,7 +180,7 @@ class Result:
         OutputError
             Where it cannot be written.
         """
-        with replacing(Path(target), anything) as partial, partial.open("wb") as file:
+        with replacing(Path(target), replace_any) as partial, partial.open("wb") as file:
             np.savez_compressed(file, allow_pickle=False, **self.arrays())
 
     def arrays(self) -> dict[str, Array]:

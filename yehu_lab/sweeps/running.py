@@ -24,7 +24,7 @@ from yehu_lab.sweeps.result import Result, result_of
 from yehu_lab.sweeps.study import Study, study_from_text
 from yehu_server.errors import OutputError, ParameterError, YehuError
 from yehu_server.simulation.run import simulate
-from yehu_server.util.files import anything, check_free, check_target, nothing, why
+from yehu_server.util.files import check_free, check_target, error_reason, replace_any, replace_none
 
 Array = Any
 Progress = Callable[[float, float], None]
@@ -91,7 +91,7 @@ def check_free_result(target: Path, *, overwrite: bool = False) -> None:
     if target.suffix != ".npz":
         raise OutputError(f"{target}: name a file that ends in .npz")
     check_target(target)
-    check_free(target, anything if overwrite else nothing)
+    check_free(target, replace_any if overwrite else replace_none)
 
 
 def run_levels(
@@ -175,7 +175,7 @@ def _received(found: Any, count: int) -> Array:
         findings = np.frombuffer(found, FINDING)
         if findings["regime"].max(initial=0) < len(REGIMES):
             return findings
-    raise YehuError("a worker answered with what are no findings")
+    raise YehuError("a worker's answer is not a result")
 
 
 def perform(task: tuple[str, bytes], _progress: Any = None) -> bytes | str:
@@ -256,4 +256,4 @@ def prepare_folder(study: Study, folder: Path, *, overwrite: bool = False) -> No
                 file.unlink()
         mark.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise OutputError(f"{folder}: {why(error)}") from error
+        raise OutputError(f"{folder}: {error_reason(error)}") from error

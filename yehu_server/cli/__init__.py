@@ -19,7 +19,7 @@ from yehu_server.cli.render_pipe import BROKEN_PIPE
 from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn
 from yehu_server.errors import YehuError
 from yehu_server.util import __version__
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 from yehu_server.util.signals import on_termination
 
 OF_ALL: tuple[list[str], ...] = (
@@ -63,7 +63,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             raise
         with Path(os.devnull).open("w") as nothing:  # Python would try again, and report it again
             os.dup2(nothing.fileno(), sys.stdout.fileno())
-        warn(f"standard output: {why(error)}")
+        warn(f"standard output: {error_reason(error)}")
         return 2
     except MemoryError:
         warn("not enough memory")

@@ -16,7 +16,7 @@ from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import one_line
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
-from yehu_server.util.files import anything, check_free, check_target, shipped_folder
+from yehu_server.util.files import check_free, check_target, replace_any, shipped_folder
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
@@ -253,7 +253,7 @@ def replaceable(arguments: argparse.Namespace) -> Callable[[Path], bool]:
     """Which older files a sound may replace, as of ``files.replacing``."""
     from yehu_server.util.sound_file import is_rendered
 
-    return anything if arguments.overwrite else is_rendered
+    return replace_any if arguments.overwrite else is_rendered
 
 
 def add_server(parser: Any) -> None:

@@ -14,7 +14,13 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import replaceable
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.rendering import build_records
-from yehu_server.util.files import check_distinct, check_free, check_target, shipped_folder, why
+from yehu_server.util.files import (
+    check_distinct,
+    check_free,
+    check_target,
+    error_reason,
+    shipped_folder,
+)
 
 if TYPE_CHECKING:
     from yehu_server.rendering.folder_tree import Entry
@@ -49,7 +55,7 @@ def perform(task: Task, report_progress: ProgressCallback) -> Line:
             for shown in (path, ascii(path)):
                 reason = reason.removeprefix(f"{shown}: ")
     except OSError as error:
-        reason = f"cannot write: {why(error)}"
+        reason = f"cannot write: {error_reason(error)}"
     except MemoryError:
         reason = "not enough memory"
     except Exception as error:  # the others have to be rendered

@@ -143,7 +143,7 @@ def _line_of(task: Task, event: Event) -> Line:
         if "error" not in line and not isinstance(line["duration_s"], float):
             raise TypeError  # noqa: TRY301 - as where it is missing
     except (KeyError, TypeError, ValueError, RecursionError):
-        return {"file": name, "error": "a worker answered with what is no result"}
+        return {"file": name, "error": "a worker's answer is not a result"}
     return line
 
 

@@ -22,7 +22,7 @@ from yehu_server.errors import OutputError
 from yehu_server.rendering import PIPE
 from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.score import Score, check_duration
-from yehu_server.util.files import anything, check_distinct, make_folder
+from yehu_server.util.files import check_distinct, make_folder, replace_any
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,7 +61,7 @@ def rendered(
     outputs |= picture_output(arguments)
     check_distinct(outputs, [*arguments.midi, *playing.files])
     form = _format(arguments)
-    may_replace = anything if arguments.output is PIPE else check_output(arguments)
+    may_replace = replace_any if arguments.output is PIPE else check_output(arguments)
     _warn_of_own(arguments, playing)
     options = sound_options_of(arguments, form)
     scores = cache(partial(_scores, arguments, playing))
@@ -93,7 +93,7 @@ def rendered(
         listen = follow or progress
         summary = render(parts, arguments.output, options, listen, may_replace, stems, watch)
     if watch is not None:
-        from yehu_server.plot.rendered import write_picture
+        from yehu_server.plot.sound_panels import write_picture
 
         watch.finish()
         voices = "" if len(parts) == 1 else f"{len(parts)} parts, "

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from yehu_server.errors import ParameterError, ScoreError, YehuError
 from yehu_server.rendering import PIPE
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 
 STDIN = "standard input"  # also the name of its file
 BROKEN_PIPE = 141  # as the shell reports a program that the signal for it has ended
@@ -57,7 +57,7 @@ def piped_in(arguments: argparse.Namespace) -> Iterator[None]:
                         raise ScoreError(f"{STDIN}: larger than {MAX_BYTES // 2**20} MiB")
                     file.write(data)
         except OSError as error:
-            raise ScoreError(f"{STDIN}: cannot be read: {why(error)}") from error
+            raise ScoreError(f"{STDIN}: cannot be read: {error_reason(error)}") from error
         arguments.midi = [path if each == "-" else each for each in arguments.midi]
         try:
             yield

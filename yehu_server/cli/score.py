@@ -30,7 +30,7 @@ from yehu_server.cli.arguments import (
 from yehu_server.cli.converters import number_within, positive, target
 from yehu_server.cli.terminal import compile_all, print_result, warn, warn_of_lost
 from yehu_server.errors import OutputError, ScoreError
-from yehu_server.scores.score import naming
+from yehu_server.scores.score import errors_name
 from yehu_server.util.files import check_distinct, write_bytes
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def _plot(arguments: argparse.Namespace, written: Written) -> None:
     check_distinct(picture_output(arguments), [arguments.score])
     quantities = instrument_of(arguments)
     within = notes_of(quantities)
-    with naming(arguments.score):
+    with errors_name(arguments.score):
         asked = [arguments.part] if arguments.part else []
         numbers = numbers_of(written.names, asked) if asked else default_parts(written, within)
         if not numbers or not written.parts[numbers[0]].notes:
@@ -131,7 +131,7 @@ def _write(arguments: argparse.Namespace) -> int:
         raise OutputError(f"{output}: ends in none of {', '.join((*MUSICXML, *JIANPU))}")
     check_distinct({"-o": output}, [arguments.score])
     written, left = read_as_written(arguments.score, arguments.song, arguments.tempo)
-    with naming(arguments.score):
+    with errors_name(arguments.score):
         if arguments.part:
             numbers = numbers_of(written.names, arguments.part)
             written = replace(written, parts=tuple(written.parts[at] for at in numbers))
@@ -158,7 +158,7 @@ def _export(arguments: argparse.Namespace, written: Written) -> None:
 
     output = arguments.export_midi
     check_distinct({"--export-midi": output}, [arguments.score])
-    with naming(arguments.score):
+    with errors_name(arguments.score):
         score = performed(written, within=notes_of(instrument_of(arguments)))
     data, lost = midi_file(written, score)
     write_bytes(output, data, overwrite=arguments.overwrite)

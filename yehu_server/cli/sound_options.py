@@ -77,7 +77,8 @@ def add_stage(parser: Any) -> None:
 def _ensemble_file(text: str) -> Path:
     if not text.endswith(".toml"):
         raise argparse.ArgumentTypeError(
-            f"{text} is no ensemble file, which ends in .toml; name MIDI files before --ensemble"
+            f"{text} is not an ensemble file, which ends in .toml; "
+            "name MIDI files before --ensemble"
         )
     return Path(text)
 

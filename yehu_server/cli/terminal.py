@@ -56,7 +56,7 @@ def check_files(files: Iterable[Path], read: Callable[[Path], tuple[str, Iterabl
         else:
             for line in remarks:
                 warn(line)
-            print_result(f"{file}: right, {found}")
+            print_result(f"{file}: valid, {found}")
     return code
 
 

@@ -59,7 +59,7 @@ def level() -> str:
 def checked(name: str) -> str:
     """Return the name of a level; raises ParameterError where this kind of machine has none."""
     if name not in levels():
-        raise ParameterError(f"{name!r} is no level of this machine's: {', '.join(levels())}")
+        raise ParameterError(f"{name!r} is not a level of this machine: {', '.join(levels())}")
     return name
 
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import MAX_DURATION_H, check_duration
-from yehu_server.util.extras import need
-from yehu_server.util.files import open_regular, why
+from yehu_server.util.extras import require_package
+from yehu_server.util.files import error_reason, open_regular
 
 Array = Any
 
@@ -85,7 +85,7 @@ def _opened(path: Path) -> Iterator[Any]:
         with open_regular(path) as data, soundfile.SoundFile(data) as file:
             yield file
     except OSError as error:
-        raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error
+        raise ScoreError(f"{path}: cannot be read ({error_reason(error).lower()})") from error
     except ValueError as error:  # a NUL in the name
         raise ScoreError("cannot be read (no such file name)") from error
     except soundfile.LibsndfileError as error:
@@ -179,5 +179,5 @@ def mono_blocks(recording: Recording, downmix: Downmix) -> Iterator[Array]:
 
 def need_follow(what: str = "to follow a recording") -> None:
     """Check that the libraries of the extra are there; raises ParameterError."""
-    need("swift_f0", what, "follow")
-    need("soxr", what, "follow")
+    require_package("swift_f0", what, "follow")
+    require_package("soxr", what, "follow")

@@ -13,7 +13,7 @@ from yehu_server.live.network import lan_address, plain
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.server import NAME, WebServer
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 from yehu_server.util.retry import Backoff
 
 OSC, OSCQUERY = "_osc._udp.local.", "_oscjson._tcp.local."
@@ -62,7 +62,7 @@ class Announcer:
         self._thread = LoopThread(
             self._announce,
             "zeroconf",
-            lambda error: on_message(f"not announced: {why(error)}"),
+            lambda error: on_message(f"not announced: {error_reason(error)}"),
             patience,
         )
 

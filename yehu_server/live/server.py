@@ -24,9 +24,9 @@ from yehu_server.live.audio.voice_input import VoiceInput
 from yehu_server.live.housekeeper import Housekeeper, MappingWatch
 from yehu_server.live.midi.ports import MidiPorts
 from yehu_server.live.options import ServeOptions
-from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
+from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.status import PART_STATUS, STATUS, PartSources, StatusSources, read_status
 from yehu_server.live.osc.work_queue import Calls
@@ -38,7 +38,7 @@ from yehu_server.playing.delay import Delay
 from yehu_server.playing.parts import assemble, number_of_instruments, player_of, seated
 from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
-from yehu_server.util.files import anything, check_free, check_target, nothing
+from yehu_server.util.files import check_free, check_target, replace_any, replace_none
 
 log = logging.getLogger(__name__)
 Input = OscPorts | WebServer | Announcer | MidiPorts | Pages | VoiceInput
@@ -69,7 +69,7 @@ class Server:
             raise YehuError("NUMBA_DISABLE_JIT: plain Python cannot play live, only render")
         for target in filter(None, (options.record, options.capture)):
             check_target(target)
-            check_free(target, anything if options.overwrite else nothing)
+            check_free(target, replace_any if options.overwrite else replace_none)
         self.options = options
         self._on_message = on_message
         with contextlib.ExitStack() as undo:

@@ -40,7 +40,7 @@ from yehu_server.playing.calibration import (
 )
 from yehu_server.playing.pitch_and_level import cents
 from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
-from yehu_server.util.files import read_text, why
+from yehu_server.util.files import error_reason, read_text
 from yehu_server.util.values import whole
 
 log = logging.getLogger(__name__)
@@ -85,7 +85,9 @@ def calibration_for(
         try:
             write_checksummed(path, json.dumps(asdict(found)).encode())
         except OSError as error:
-            log.warning("%s: %s; the calibration is not kept for the next start", path, why(error))
+            log.warning(
+                "%s: %s; the calibration is not kept for the next start", path, error_reason(error)
+            )
             _unkept[key] = found
     return found
 

@@ -14,7 +14,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from yehu_server.errors import OutputError, PresetError
 from yehu_server.params.preset_file import SAVED, VERSION, Preset, document_of, preset_from
-from yehu_server.util.files import PLAIN_NAME, inside, read_text, shipped_folder, write_text
+from yehu_server.util.files import PLAIN_NAME, path_inside, read_text, shipped_folder, write_text
 
 ENDING = ".toml"
 MINE = "mine/"  # prefix of the names of the user's own presets
@@ -191,7 +191,7 @@ class Presets:
     def _own_file(self, name: str) -> Path:
         """The path of an own preset; raises PresetError for what is no plain name, as `inside`."""
         try:
-            return inside(self.own, name, ENDING)
+            return path_inside(self.own, name, ENDING)
         except OutputError as error:
             raise PresetError(str(error)) from error
 

@@ -19,7 +19,7 @@ from yehu_server.core.midi.notes import fitted, pitch_of_key
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError
-from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, shipped_folder, why
+from yehu_server.util.files import MAX_SETTINGS_BYTES, error_reason, read_text, shipped_folder
 
 
 class RangePolicy(Enum):
@@ -206,7 +206,7 @@ class _Lines:
         except UnicodeDecodeError as error:
             text = error.object.decode("latin-1")
         except (OSError, ValueError) as error:  # a name may have a NUL
-            raise ParameterError(f"{path}: {why(error)}") from error
+            raise ParameterError(f"{path}: {error_reason(error)}") from error
         if _NO_TEXT.search(text):
             raise ParameterError(f"{path}: not a text file")
         self._lines = _LINE_END.split(text.removeprefix("\ufeff").partition("\x1a")[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.errors import ParameterError
-from yehu_server.util.extras import need
+from yehu_server.util.extras import require_package
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +20,7 @@ def axes_of(ax: Any) -> Axes:
 
     Raises ParameterError where matplotlib is missing, or `ax` is something else.
     """
-    need("matplotlib", "yehu.plot", "plots")
+    require_package("matplotlib", "yehu.plot", "plots")
     from matplotlib.axes import Axes
 
     if ax is None:
@@ -37,7 +37,7 @@ def figure_of(figure: Figure | None, width: float, height: float) -> Figure:
 
     Raises ParameterError where matplotlib is missing.
     """
-    need("matplotlib", "yehu.plot", "plots")
+    require_package("matplotlib", "yehu.plot", "plots")
     if figure is not None:
         return figure
     import matplotlib.pyplot as plt

@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.following.heard import Heard
 from yehu_server.following.notes import A4_HZ, midi_of
 from yehu_server.plot.axes import ABOVE
-from yehu_server.plot.rendered import ASKED, GRID, HEARD, label_notes, write_picture
+from yehu_server.plot.sound_panels import ASKED, GRID, HEARD, label_notes, write_picture
 from yehu_server.rendering.plot_data import PlotData
 
 MARGIN = 1.5  # semitones

@@ -8,8 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import OutputError, one_line
-from yehu_server.util.extras import need
-from yehu_server.util.files import anything, check_free, check_target, open_regular, replacing, why
+from yehu_server.util.extras import require_package
+from yehu_server.util.files import (
+    check_free,
+    check_target,
+    error_reason,
+    open_regular,
+    replace_any,
+    replacing,
+)
 
 SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
 DPI = 110
@@ -23,11 +30,11 @@ def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
     `what` needs it, such as ``--plot``, for the message. Raises ParameterError where matplotlib is
     missing; OutputError where it may not, or its name ends otherwise than in .png.
     """
-    need("matplotlib", what, "plots")
+    require_package("matplotlib", what, "plots")
     if target.suffix.lower() != ".png":
         raise OutputError(f"{target}: a picture is a .png file")
     check_target(target)
-    check_free(target, anything if overwrite else is_ours)
+    check_free(target, replace_any if overwrite else is_ours)
 
 
 def is_ours(target: Path) -> bool:
@@ -64,11 +71,11 @@ def write_picture(
         FigureCanvasAgg(figure)
         fill(figure)
         figure.savefig(data, format="png", metadata={"Software": SOFTWARE})
-    with replacing(target, anything if overwrite else is_ours) as partial:
+    with replacing(target, replace_any if overwrite else is_ours) as partial:
         try:
             partial.write_bytes(data.getvalue())
         except OSError as error:
-            raise OutputError(f"{target}: cannot write: {why(error)}") from error
+            raise OutputError(f"{target}: cannot write: {error_reason(error)}") from error
 
 
 def plain(text: str, most: int = MAX_TEXT) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from yehu_server.errors import ParameterError
 from yehu_server.plot.axes import axes_of
-from yehu_server.plot.rendered import draw_level, draw_pitch, draw_spectrogram
+from yehu_server.plot.sound_panels import draw_level, draw_pitch, draw_spectrogram
 from yehu_server.rendering.plot_data import TOP_HZ, PlotData
 
 if TYPE_CHECKING:

@@ -18,12 +18,12 @@ from typing import Any
 
 from yehu_server.errors import OutputError
 from yehu_server.util.files import (
+    error_reason,
     make_folder,
     open_at_once,
     open_regular,
     read_lines,
     read_text,
-    why,
     write_text,
 )
 
@@ -69,7 +69,7 @@ def check_manifest(folder: Path) -> None:
         return
     except (OSError, ValueError, RecursionError, TypeError):
         pass
-    raise OutputError(f"{path}: is no manifest of yehu-server; move it away")
+    raise OutputError(f"{path}: is not a manifest of yehu-server; move it away")
 
 
 def hash_of(path: Path) -> str:
@@ -178,7 +178,7 @@ def alone_in(folder: Path) -> Iterator[None]:
         path.parent.mkdir(parents=True, exist_ok=True)
         file = open(path, "w", opener=open_at_once)  # noqa: SIM115 - closed below
     except OSError as error:
-        raise OutputError(f"{folder}: cannot write: {why(error)}") from error
+        raise OutputError(f"{folder}: cannot write: {error_reason(error)}") from error
     with file:
         try:
             import fcntl

@@ -25,7 +25,7 @@ from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.plain_unpickling import ForeignError, plain_client
 from yehu_server.rendering.workers import Event, Perform
 from yehu_server.util.documents import Document
-from yehu_server.util.extras import need
+from yehu_server.util.extras import require_package
 from yehu_server.util.values import line
 
 PORT = 8786  # Dask's own choice
@@ -74,7 +74,7 @@ class Cluster:
         setup: Callable[[], object] | None = None,
         warn: Callable[[str], None] = lambda _line: None,
     ) -> None:
-        need("distributed", "--dask", "cluster")
+        require_package("distributed", "--dask", "cluster")
         self.address = scheduler_address(address)
         self._setup, self._warn = pickle.dumps(setup or cluster_worker.no_setup), warn
         self._client: Any = None

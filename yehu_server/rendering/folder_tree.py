@@ -12,7 +12,7 @@ from pathlib import Path
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.reading import MIDI, WRITTEN
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 
 # The first is preferred for a plain name. A text may be anything, such as about the others.
 ENDINGS = tuple(ending for ending in (*MIDI, *WRITTEN) if ending != ".txt")
@@ -65,8 +65,8 @@ def _names(folder: Path, output: Path, problems: list[tuple[str, str]]) -> Itera
     def is_unreadable(error: OSError) -> None:
         place = os.path.relpath(error.filename, folder)
         if place == ".":
-            raise ScoreError(f"{folder}: cannot be read: {why(error)}") from error
-        problems.append((place, f"cannot be read: {why(error)}"))
+            raise ScoreError(f"{folder}: cannot be read: {error_reason(error)}") from error
+        problems.append((place, f"cannot be read: {error_reason(error)}"))
 
     seen = {os.path.realpath(folder), os.path.realpath(output)}
     for place, folders, files in os.walk(folder, onerror=is_unreadable, followlinks=True):

@@ -17,7 +17,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.stage.image_sources import EARS
 from yehu_server.scores.capture import Capture
 from yehu_server.scores.score import check_duration
-from yehu_server.util.files import anything
+from yehu_server.util.files import replace_any
 from yehu_server.util.sound_file import sound_file
 
 BLOCK = 1024  # frames; the ring holds all commands that can be applied in one block
@@ -67,7 +67,7 @@ def replay(
     subtype: str,
     max_duration_h: float = math.inf,
     progress: Callable[[float, float], None] | None = None,
-    may_replace: Callable[[Path], bool] = anything,
+    may_replace: Callable[[Path], bool] = replace_any,
 ) -> Replayed:
     """Render a capture to a sound file. Raises YehuError; no partial file is left then."""
     check_duration(capture.frames / capture.rate, max_duration_h, "the capture lasts")

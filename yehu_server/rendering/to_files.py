@@ -21,7 +21,7 @@ from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
 from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.capture_writer import LiveCapture
-from yehu_server.util.files import anything, why
+from yehu_server.util.files import error_reason, replace_any
 from yehu_server.util.sound_file import SoundWriter, sound_file
 
 Array = Any
@@ -116,7 +116,7 @@ def write_normalized(
                 scratch.seek(0)
         except OSError as error:
             raise OutputError(
-                f"{folder or tempfile.gettempdir()}: cannot write: {why(error)}"
+                f"{folder or tempfile.gettempdir()}: cannot write: {error_reason(error)}"
             ) from error
         peak = meter.finish()
         factor = np.float32(NORMALIZED_PEAK / peak if peak > 0.0 else 1.0)
@@ -130,7 +130,7 @@ def render(
     target: Path,
     options: Options,
     progress: ProgressCallback | None = None,
-    may_replace: Callable[[Path], bool] = anything,
+    may_replace: Callable[[Path], bool] = replace_any,
     stems: Sequence[Path] = (),
     watch: PlotData | None = None,
 ) -> Summary:

@@ -20,7 +20,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from yehu_server.errors import YehuError
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 from yehu_server.util.signals import on_termination
 
 ProgressCallback = Callable[[float, float], None]  # what is done, and of what
@@ -55,7 +55,7 @@ class _Worker:
         try:
             self.process.start()
         except OSError as error:
-            raise YehuError(f"a process cannot be started: {why(error)}") from error
+            raise YehuError(f"a process cannot be started: {error_reason(error)}") from error
         finally:
             theirs.close()
 

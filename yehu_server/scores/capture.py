@@ -28,7 +28,7 @@ from yehu_server.scores.capture_format import (
 )
 from yehu_server.scores.capture_header import SessionStart, read_header
 from yehu_server.util.documents import Document, Fields
-from yehu_server.util.files import read_lines, why
+from yehu_server.util.files import error_reason, read_lines
 
 MAX_BYTES = 1 << 30
 MAX_COMMANDS = 20_000_000  # each takes 48 bytes
@@ -70,7 +70,7 @@ def read_capture(path: Path) -> Capture:
         capture = _header(path, next(lines, ""))
         rows = np.fromiter(_rows(path, lines, capture), ROW)
     except OSError as error:
-        raise ScoreError(f"{path}: {why(error)}") from error
+        raise ScoreError(f"{path}: {error_reason(error)}") from error
     except ValueError as error:  # no UTF-8, or a NUL in the name
         raise ScoreError(f"{path}: not a capture ({error})") from error
     for player in range(len(capture.beginning.players)):

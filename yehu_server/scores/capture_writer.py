@@ -17,7 +17,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.scores.capture_format import as_line
 from yehu_server.scores.capture_header import SessionStart, header_of, session_start_of
-from yehu_server.util.files import create, discard, why, write_all
+from yehu_server.util.files import create, discard, error_reason, write_all
 
 ROOM_BYTES = 1 << 16  # free space needed to begin a capture
 
@@ -63,7 +63,7 @@ class CaptureWriter:
                 written = self._file.seek(0, io.SEEK_END) - self._whole_bytes
                 self._file.truncate(self._whole_bytes + data.rfind(b"\n", 0, written) + 1)
             self._file.close()
-            raise OutputError(f"{self._target}: cannot write: {why(error)}") from error
+            raise OutputError(f"{self._target}: cannot write: {error_reason(error)}") from error
 
 
 class LiveCapture:

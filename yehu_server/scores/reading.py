@@ -16,7 +16,7 @@ from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
 from yehu_server.scores.rubato import delays_of, midi_delays
-from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, naming
+from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, errors_name
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.track import DamagedError
 from yehu_server.scores.written.in_range import default_parts, moved
@@ -148,10 +148,10 @@ def read_any(
     path = Path(path)
     if not is_written(path):
         score = read_score(path, song=song, strict=strict, max_duration_h=max_duration_h)
-        with naming(path):
+        with errors_name(path):
             return _midi_played(score, options)
     written = read_written(path, song)
-    with naming(path):
+    with errors_name(path):
         score = performed_part(written, options)
         check_duration(score.duration_s, max_duration_h)
         if strict and score.warnings:
@@ -211,7 +211,7 @@ def read_written(path: Path, song: int | None = None) -> Written:
     if form in READERS:
         read: Callable[[Path], Written] = resolve_name(READERS[form])
         return read(path)
-    reason = f"is no written score: it is no XML, nor named {', '.join(WRITTEN)}"
+    reason = f"is not a written score: it is not XML, nor named {', '.join(WRITTEN)}"
     if form == "humdrum":
         reason = "is humdrum (**kern), which is not read; convert it to MusicXML, as Verovio does"
     raise ScoreError(f"{one_line(str(path))}: {reason}")

@@ -16,7 +16,7 @@ from typing import ClassVar
 import mido
 
 from yehu_server.errors import ScoreError, one_line
-from yehu_server.util.files import read_bytes, why
+from yehu_server.util.files import error_reason, read_bytes
 
 MAX_DURATION_H = 2.0  # of all that is played, where no other is asked for
 LONGEST_DURATION_H = 1000.0  # that may be asked for
@@ -33,7 +33,7 @@ def check_duration(seconds: float, max_duration_h: float, what: str = "the score
 
 
 @contextlib.contextmanager
-def naming(path: str | os.PathLike[str]) -> Iterator[None]:
+def errors_name(path: str | os.PathLike[str]) -> Iterator[None]:
     """Let errors about a score name its file."""
     try:
         yield
@@ -58,7 +58,7 @@ def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:
     except OSError as error:
         if error.errno == errno.EFBIG:
             raise ScoreError(f"larger than {most_bytes >> 20} MiB") from None
-        raise ScoreError(f"cannot be read ({why(error).lower()})") from None
+        raise ScoreError(f"cannot be read ({error_reason(error).lower()})") from None
     except ValueError:  # a NUL in the name
         raise ScoreError("cannot be read (no such file name)") from None
     if not data.strip():

@@ -33,7 +33,7 @@ from yehu_server.scores.score import (
     Score,
     ScoreEvent,
     ScorePart,
-    naming,
+    errors_name,
     notes_of,
 )
 from yehu_server.scores.smf.reader import read_score
@@ -77,12 +77,12 @@ def read_as_written(
     Raises ScoreError, one line naming the file, where it cannot be read or has no note.
     """
     if is_capture(path):
-        with naming(path):
+        with errors_name(path):
             return written_of_capture(read_capture(path), tempo)
     if is_written(path):
         return read_written(path, song), {}
     score = read_score(path, song=song)
-    with naming(path):
+    with errors_name(path):
         written, lost = written_of_midi(score, tempo)
     return replace(written, warnings=score.warnings), lost
 

@@ -24,7 +24,7 @@ from yehu_server.errors import OutputError
 from yehu_server.scores.gesture import CONTROLS, Gesture
 from yehu_server.simulation.labels import as_data, as_json, dimensions, hash_of, label_of
 from yehu_server.util import __version__
-from yehu_server.util.extras import need
+from yehu_server.util.extras import require_package
 from yehu_server.util.files import replacing
 from yehu_server.util.npz_file import read_npz
 
@@ -81,7 +81,7 @@ class Simulation:
         >>> data.bridge_force.attrs["units"], data.sel(time=0.05, method="nearest").sizes
         ('N', Frozen({'string': 2}))
         """
-        need("xarray", "to_xarray", "lab")
+        require_package("xarray", "to_xarray", "lab")
         import xarray
 
         found = {

@@ -10,7 +10,7 @@ import hashlib
 import secrets
 from pathlib import Path
 
-from yehu_server.util.files import read_bytes, why
+from yehu_server.util.files import error_reason, read_bytes
 
 MAX_BYTES = 64 * 2**20
 DIGEST_BYTES = 16
@@ -34,7 +34,7 @@ def read_checksummed(path: Path) -> bytes | None:
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise ChecksumError(why(error)) from error
+        raise ChecksumError(error_reason(error)) from error
     checksum, payload = data[:DIGEST_BYTES], data[DIGEST_BYTES:]
     if checksum != _digest(path, payload):
         raise ChecksumError("it is damaged")

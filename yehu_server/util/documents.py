@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
 from yehu_server.errors import ParameterError, YehuError, did_you_mean
-from yehu_server.util.files import MAX_SETTINGS_BYTES, read_text, why
+from yehu_server.util.files import MAX_SETTINGS_BYTES, error_reason, read_text
 from yehu_server.util.parsing import KeyPath, line_at, lines_of, parse_json, parse_toml
 from yehu_server.util.values import brief
 
@@ -50,7 +50,7 @@ class Document:
         try:
             self.text = read_text(path, most_bytes)
         except OSError as error:
-            raise self._unreadable(f"{self.name}: {why(error)}") from error
+            raise self._unreadable(f"{self.name}: {error_reason(error)}") from error
         except ValueError as error:  # not UTF-8, or a path with a NUL
             raise self._not(error) from error
         return self

@@ -7,7 +7,7 @@ import importlib
 from yehu_server.errors import ParameterError
 
 
-def need(module: str, what: str, extra: str) -> None:
+def require_package(module: str, what: str, extra: str) -> None:
     """Check that a library is there.
 
     Raises ParameterError where it is missing, which names the extra that brings it.

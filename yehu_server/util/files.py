@@ -83,7 +83,7 @@ def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
     return read_bytes(path, most_bytes).decode("utf-8")
 
 
-def why(error: BaseException) -> str:
+def error_reason(error: BaseException) -> str:
     """The reason of an error, for a message: its own, or the system's where it has one."""
     if isinstance(error, OSError) and error.strerror:
         # `socket.create_server` adds an address, which our message has already.
@@ -96,10 +96,10 @@ def make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{folder}: cannot be made: {why(error)}") from error
+        raise OutputError(f"{folder}: cannot be made: {error_reason(error)}") from error
 
 
-def inside(folder: Path, name: str, ending: str = "") -> Path:
+def path_inside(folder: Path, name: str, ending: str = "") -> Path:
     """The path in a folder for a name that came over the network.
 
     Raises OutputError where it is no plain name, or a symbolic link that leads out of the folder.
@@ -132,7 +132,7 @@ def check_target(target: Path) -> None:
         if target.exists() and not stat.S_ISREG(target.stat().st_mode):
             raise OutputError(f"{target}: is not a regular file")
     except OSError as error:
-        raise OutputError(f"{target}: cannot write: {why(error)}") from error
+        raise OutputError(f"{target}: cannot write: {error_reason(error)}") from error
     if not os.access(folder, os.W_OK):
         raise OutputError(f"{target}: the folder {folder} is not writable")
 
@@ -162,17 +162,17 @@ def is_same(one: Path, other: Path) -> bool:
         return os.path.realpath(one) == os.path.realpath(other)
 
 
-def anything(_target: Path) -> bool:
+def replace_any(_target: Path) -> bool:
     """Allow to replace any file; see `replacing`."""
     return True
 
 
-def nothing(_target: Path) -> bool:
+def replace_none(_target: Path) -> bool:
     """Allow to replace no file; see `replacing`."""
     return False
 
 
-def check_free(target: Path, may_replace: Callable[[Path], bool] = nothing) -> None:
+def check_free(target: Path, may_replace: Callable[[Path], bool] = replace_none) -> None:
     """Check that a target is not there, or may be replaced; raises OutputError where it may not."""
     if os.path.lexists(target) and not may_replace(target):
         raise OutputError(f"{target}: exists; --overwrite replaces it")
@@ -205,7 +205,7 @@ def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.
     except FileExistsError:
         raise OutputError(f"{target}: exists") from None
     except OSError as error:
-        raise OutputError(f"{target}: cannot write: {why(error)}") from error
+        raise OutputError(f"{target}: cannot write: {error_reason(error)}") from error
     return file
 
 
@@ -224,7 +224,7 @@ def write_all(file: io.FileIO, data: bytes) -> None:
 
 
 @contextlib.contextmanager
-def replacing(target: Path, may_replace: Callable[[Path], bool] = anything) -> Iterator[Path]:
+def replacing(target: Path, may_replace: Callable[[Path], bool] = replace_any) -> Iterator[Path]:
     """Yield a path beside `target` to write to; move it there when the block succeeds.
 
     An error or interrupt within the block removes the partial file and leaves an older `target`
@@ -242,7 +242,7 @@ def replacing(target: Path, may_replace: Callable[[Path], bool] = anything) -> I
         yield partial
         _move(partial, target, may_replace)
     except OSError as error:
-        raise OutputError(f"{target}: cannot write: {why(error)}") from error
+        raise OutputError(f"{target}: cannot write: {error_reason(error)}") from error
     finally:
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)
@@ -271,7 +271,7 @@ def _beside(target: Path) -> Path:
 
 def write_bytes(target: Path, data: bytes, *, overwrite: bool = True) -> Path:
     """Write a file as `replacing` does; return its path."""
-    with replacing(target, anything if overwrite else nothing) as partial:
+    with replacing(target, replace_any if overwrite else replace_none) as partial:
         partial.write_bytes(data)
     return target
 
@@ -286,5 +286,5 @@ def write_text(target: Path, text: str) -> None:
 
 def shipped_folder(name: str) -> Path:
     """The folder of shipped files: in the package, or beside it in a checkout."""
-    inside = PACKAGE / name
-    return inside if inside.is_dir() else PACKAGE.parent / name
+    path_inside = PACKAGE / name
+    return path_inside if path_inside.is_dir() else PACKAGE.parent / name

@@ -12,7 +12,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 
 log = logging.getLogger(__name__)
 
@@ -83,9 +83,9 @@ def run_forever(
         except Exception as error:  # the thread must go on
             wait_s = backoff.failed()
             with contextlib.suppress(*SHORTAGES):
-                if backoff.is_news(why(error)):
+                if backoff.is_news(error_reason(error)):
                     log.debug("%s", what, exc_info=True)
-                    on_error(f"{what}: {why(error)}; trying again")
+                    on_error(f"{what}: {error_reason(error)}; trying again")
         else:
             backoff.worked()
             wait_s = every_s

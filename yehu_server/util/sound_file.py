@@ -13,7 +13,7 @@ import soundfile
 
 from yehu_server.errors import OutputError
 from yehu_server.util import flac_stream, wav_stream
-from yehu_server.util.files import anything, open_regular, replacing, why
+from yehu_server.util.files import error_reason, open_regular, replace_any, replacing
 from yehu_server.util.flac_stream import FlacStream
 from yehu_server.util.subtypes import FORMATS, SUBTYPES
 from yehu_server.util.wav_stream import WavStream
@@ -90,7 +90,7 @@ class SoundWriter:
         try:
             yield
         except OSError as error:
-            raise OutputError(f"{self._target}: cannot write: {why(error)}") from error
+            raise OutputError(f"{self._target}: cannot write: {error_reason(error)}") from error
 
     @property
     def rms(self) -> float:
@@ -124,7 +124,7 @@ def sound_file(
     rate: int,
     format_name: str,
     subtype: str,
-    may_replace: Callable[[Path], bool] = anything,
+    may_replace: Callable[[Path], bool] = replace_any,
     *,
     channels: int = 1,
 ) -> Iterator[SoundWriter]:

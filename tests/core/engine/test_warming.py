@@ -7,7 +7,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from yehu_server.compile import helpers
+from yehu_server.compile import worker_processes
 from yehu_server.core.engine import warming
 from yehu_server.util.processes import python_command
 
@@ -17,12 +17,12 @@ def test_what_is_not_kept_is_compiled_by_a_process_for_each_of_two_processors(
     processors, expected, monkeypatch
 ):
     warming.warm_up()
-    command = python_command("yehu_server.compile.helpers")
+    command = python_command("yehu_server.compile.worker_processes")
     for is_kept, commands in ((True, []), (False, [command] * expected)):
         with monkeypatch.context() as patch:
-            popen = Mock(wraps=helpers.subprocess.Popen)
-            patch.setattr(helpers.subprocess, "Popen", popen)
-            patch.setattr(helpers.os, "cpu_count", lambda: processors)
+            popen = Mock(wraps=worker_processes.subprocess.Popen)
+            patch.setattr(worker_processes.subprocess, "Popen", popen)
+            patch.setattr(worker_processes.os, "cpu_count", lambda: processors)
             if not is_kept:
                 patch.setattr(warming, "is_warm", lambda: False)
             warming.warm_up()
@@ -30,7 +30,7 @@ def test_what_is_not_kept_is_compiled_by_a_process_for_each_of_two_processors(
 
 
 def test_what_a_helper_cannot_compile_is_compiled_at_its_first_use(monkeypatch):
-    monkeypatch.setattr(helpers, "python_command", lambda _: [sys.executable, "-c", ""])
+    monkeypatch.setattr(worker_processes, "python_command", lambda _: [sys.executable, "-c", ""])
     monkeypatch.setattr(warming, "is_warm", lambda: False)
     warming.warm_up()
     assert all(function.address for function in warming.CALLED)

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 from fuzz.target import target, words
 
-from yehu_server.live.osc.answering import Framing, FramingError
 from yehu_server.live.osc.packets import Message, PacketError, answer, pack, unpack
+from yehu_server.live.osc.peers import Framing, FramingError
 
 MAX_WRAPPED_BYTES = 60_000  # fit a packet of either framing
 WORDS = words(

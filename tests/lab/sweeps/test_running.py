@@ -114,7 +114,7 @@ def test_what_a_stranger_answers_is_no_finding_and_workers_that_die_are_reported
         return SimpleNamespace(perform_all=perform_all)
 
     dead = SimpleNamespace(is_end=True, died="4 workers", job=0, result=None)
-    no_findings = "a worker answered with what are no findings"
+    no_findings = "a worker's answer is not a result"
     for cluster, told in (
         *((answers(lambda _, each=each: each), no_findings) for each in (None, b"", [1], 5)),
         (answers(lambda found: found + found[:1]), no_findings),

@@ -11,7 +11,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from pythonosc import slip
 
-from yehu_server.live.osc.answering import Framing, FramingError
+from yehu_server.live.osc.peers import Framing, FramingError
 
 ESC, END = b"\xdb", b"\xc0"
 MAX_BYTES = 65_535  # of a packet: as long as UDP allows

@@ -10,8 +10,8 @@ import urllib.request
 
 import pytest
 
-from yehu_server.live.web.access import Connections
 from yehu_server.live.web.loop_thread import LoopThread
+from yehu_server.live.web.request_filter import Connections
 from yehu_server.live.web.server import WebOptions
 from yehu_server.util.retry import Backoff
 

@@ -11,7 +11,7 @@ from web_client import BINARY, TEXT, Refused, WebSocket, ask
 from wire import Message, Wire
 
 from yehu_server.live import limits
-from yehu_server.live.osc.answering import WebTraffic
+from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.web.server import WebOptions
 from yehu_server.live.web.web_sockets import WebPeer
 

@@ -11,8 +11,8 @@ from functools import cache
 
 from yehu_server.compile import machine_code
 from yehu_server.compile.cache_folder import IS_CACHED
-from yehu_server.compile.helpers import Progress, compile_apart
 from yehu_server.compile.jit import IS_PLAIN, Native, with_called
+from yehu_server.compile.worker_processes import Progress, compile_apart
 from yehu_server.core.engine.mixing import mix_block
 from yehu_server.core.engine.native import (
     callback,

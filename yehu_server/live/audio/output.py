@@ -24,7 +24,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.errors import DeviceError
 from yehu_server.live.audio.devices import OUTPUT
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 from yehu_server.util.processes import Child, Message
 from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, run_forever
 
@@ -54,7 +54,9 @@ class SharedMemory:
         except OSError as error:  # such as a limit on files, which holds for memory too
             os.close(self.descriptor)
             size = f"{self.size / 1e6:.0f} MB"
-            raise DeviceError(f"no memory of {size} for instruments: {why(error)}") from error
+            raise DeviceError(
+                f"no memory of {size} for instruments: {error_reason(error)}"
+            ) from error
         self.buffer = mmap.mmap(self.descriptor, self.size)
 
     def close(self) -> None:
@@ -197,7 +199,9 @@ class Output:
                 "yehu_server.live.audio.stream", self._events.put, share=[self.memory.descriptor]
             )
         except SHORTAGES as error:
-            self._give_up(f"the audio process cannot be started: {why(error)}", self._shortages)
+            self._give_up(
+                f"the audio process cannot be started: {error_reason(error)}", self._shortages
+            )
             return
         self._child.send("search", kind=OUTPUT, device=self._options.device)
 

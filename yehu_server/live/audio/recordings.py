@@ -14,7 +14,7 @@ import numpy as np
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.live import limits
-from yehu_server.util.files import create, discard, inside, why
+from yehu_server.util.files import create, discard, error_reason, path_inside
 from yehu_server.util.sound_file import SoundWriter, format_of
 from yehu_server.util.subtypes import DEFAULT_SUBTYPES, SUBTYPES
 from yehu_server.util.token_bucket import TokenBucket
@@ -181,7 +181,7 @@ class Recordings:
         Raises OutputError where a requested recording runs, the name is not plain or already taken,
         too many were begun of late or are there, or the file cannot be written.
         """
-        target = inside(self._folder, name, "" if Path(name).suffix in ENDINGS else ".wav")
+        target = path_inside(self._folder, name, "" if Path(name).suffix in ENDINGS else ".wav")
         if self._requested is not None and self._requested.is_running:
             raise OutputError(f"already recording {self._requested.target.name}")
         if not self._begins.takes(time.monotonic()):
@@ -195,7 +195,7 @@ class Recordings:
                     f"{self._folder} has {limits.RECORDINGS} files; remove some first"
                 )
         except OSError as error:
-            raise OutputError(f"{self._folder}: {why(error)}") from error
+            raise OutputError(f"{self._folder}: {error_reason(error)}") from error
         self._requested = Recorder(self._tape, target, self._tape.frame, self._on_message)
         self._on_message(f"recording {target}")
         return target.name

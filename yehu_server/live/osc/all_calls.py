@@ -13,7 +13,7 @@ from functools import partial
 from yehu_server.live.osc.call import Argument, Call
 from yehu_server.live.osc.context import Act, CallContext, GroupCalls
 from yehu_server.live.osc.learn_calls import LearnCalls
-from yehu_server.live.osc.part_calls import PartCalls
+from yehu_server.live.osc.playing_calls import PartCalls
 from yehu_server.live.osc.preset_calls import PRESETS, PresetCalls
 from yehu_server.live.osc.server_calls import ServerCalls
 from yehu_server.live.part_addresses import FIRST, group_of

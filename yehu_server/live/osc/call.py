@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from yehu_server.errors import RefusedError
-from yehu_server.live.osc.answering import Peer
+from yehu_server.live.osc.peers import Peer
 from yehu_server.params.table import find
 
 

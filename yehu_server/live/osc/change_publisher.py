@@ -13,8 +13,8 @@ from functools import cache
 from typing import Any
 
 from yehu_server.live import limits
-from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import split_group
 from yehu_server.params.table import UNIT, read

@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterable, Iterator
 
 from yehu_server.errors import shortened
 from yehu_server.live import limits
-from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.change_publisher import ChangePublisher, Status, Subscriber, Values
 from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import STATUS_PREFIX
 from yehu_server.live.part_addresses import FIRST
 

@@ -12,7 +12,7 @@ from yehu_server.errors import DeviceError, RefusedError
 from yehu_server.live.network import Address, format_address
 from yehu_server.live.osc.packets import Message, PacketError, pack, unpack
 from yehu_server.params.table import PREFIX
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 
 ANSWERS_WITHIN_S = 2.0
 DATAGRAM_BYTES = 1 << 16
@@ -28,7 +28,7 @@ class OscClient:
             self._socket = socket.socket(family, kind)
             self._socket.connect(address)  # receives from this server only
         except OSError as error:
-            raise DeviceError(f"{self._name}: {why(error)}") from error
+            raise DeviceError(f"{self._name}: {error_reason(error)}") from error
 
     def __enter__(self) -> Self:
         return self

@@ -9,10 +9,10 @@ from functools import partial
 
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live import limits
-from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.schedule import Schedule
 from yehu_server.live.osc.status import Counts
 from yehu_server.live.part_addresses import FIRST, OF_PARTS, PART_PARAMS, PLAIN, group_of, part_of

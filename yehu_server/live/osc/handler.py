@@ -12,12 +12,12 @@ from functools import partial
 
 from yehu_server.errors import YehuError
 from yehu_server.live.osc.all_calls import acts, own_calls
-from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.context import Act, CallContext
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, near
 from yehu_server.live.osc.packets import Message, PacketError, answer, steps
-from yehu_server.live.osc.part_calls import PartCalls, within_an_hour
+from yehu_server.live.osc.peers import Peer
+from yehu_server.live.osc.playing_calls import PartCalls, within_an_hour
 from yehu_server.live.osc.schedule import AHEAD_S, TagClock
 from yehu_server.live.part_addresses import part_of, split_group
 from yehu_server.params.table import PREFIX

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from functools import partial
 
 from yehu_server.errors import ParameterError
-from yehu_server.live.osc.answering import Peer
 from yehu_server.live.osc.call import ADDRESS, Request, osc_call
 from yehu_server.live.osc.context import GroupCalls
+from yehu_server.live.osc.peers import Peer
 from yehu_server.live.part_addresses import check_own, split_group
 from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learn

@@ -13,7 +13,7 @@ from yehu_server.errors import DeviceError, YehuError
 from yehu_server.live import limits
 from yehu_server.live.network import format_address
 from yehu_server.live.osc.command_client import OscClient
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 
 TRIES_FOR_A_PORT = 20
 # Linux's numbers of options that Python's socket module does not name.
@@ -36,7 +36,7 @@ def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
         return _bind(family, host, port)
     except OSError as error:
         raise DeviceError(
-            f"OSC: cannot listen at {format_address(host, port)}: {why(error)}"
+            f"OSC: cannot listen at {format_address(host, port)}: {error_reason(error)}"
             f"{by_whom(error, host, port)}"
         ) from error
 

@@ -19,7 +19,9 @@ from functools import lru_cache, partial
 
 from yehu_server.live import limits
 from yehu_server.live.network import Address, Allowed, is_here
-from yehu_server.live.osc.answering import (
+from yehu_server.live.osc.handler import OscHandler
+from yehu_server.live.osc.open_sockets import CONTROL_BYTES, open_both, prepare, stamp_and_drops
+from yehu_server.live.osc.peers import (
     FramingError,
     Peer,
     TcpPeer,
@@ -27,8 +29,6 @@ from yehu_server.live.osc.answering import (
     UdpPeer,
     answer_bucket,
 )
-from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.open_sockets import CONTROL_BYTES, open_both, prepare, stamp_and_drops
 from yehu_server.live.osc.work_queue import Calls, WorkQueue
 
 log = logging.getLogger(__name__)

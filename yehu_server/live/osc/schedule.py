@@ -13,7 +13,7 @@ import itertools
 import time
 
 from yehu_server.live import limits
-from yehu_server.live.osc.answering import Peer
+from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.work_queue import Shares
 from yehu_server.live.part_addresses import PART, part_of
 from yehu_server.params.table import PREFIX

@@ -9,7 +9,7 @@ from yehu_server.live.osc.change_publisher import own_address, topic_of
 from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, parameter_of, readable
 from yehu_server.live.osc.packets import answer
-from yehu_server.live.osc.part_calls import port_of
+from yehu_server.live.osc.playing_calls import port_of
 from yehu_server.live.part_addresses import check_own, check_part, split_group
 from yehu_server.params.table import PREFIX, UNIT, read
 

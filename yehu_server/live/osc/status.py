@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from yehu_server.core.engine.ensemble import Ensemble
     from yehu_server.live.audio.output import OutputState
     from yehu_server.live.midi.ports import MidiPorts
-    from yehu_server.live.osc.answering import Traffic, WebTraffic
+    from yehu_server.live.osc.peers import Traffic, WebTraffic
     from yehu_server.playing.delay import Delay
     from yehu_server.playing.player import Player
 

@@ -13,7 +13,7 @@ from collections import OrderedDict, deque
 from collections.abc import Callable, Iterator
 
 from yehu_server.live import limits
-from yehu_server.live.osc.answering import Peer
+from yehu_server.live.osc.peers import Peer
 
 TURN_NS, SLICE_NS = 2_000_000, 500_000  # of one call of `work`, and of one sender's turn in it
 DONE = object()

@@ -23,7 +23,7 @@ from yehu_server.live.page.guests import Admission, Guests
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
 from yehu_server.live.page.sockets import PageSockets
-from yehu_server.live.web.access import Connections, check, own_names, serve_http
+from yehu_server.live.web.request_filter import Connections, check, own_names, serve_http
 from yehu_server.util.processes import Child, Message, Parent
 
 NICE = 5  # after the processes that play

@@ -20,7 +20,7 @@ from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.live.page.examples import examples, write_capture_headers
 from yehu_server.live.page.facts import facts, module, write
-from yehu_server.util.files import make_folder, shipped_folder, why, write_bytes
+from yehu_server.util.files import error_reason, make_folder, shipped_folder, write_bytes
 
 INDEX = "index.html"
 # This meta element says that a yehu server serves the page; the static page does not have it.
@@ -164,7 +164,7 @@ def write_page(folder: Path) -> list[Path]:
         files += [path.relative_to(folder) for path in beginnings]
         _write_worker(folder, [file for file in files if file != Path(WORKER)])
     except OSError as error:
-        raise OutputError(f"{folder}: {why(error)}") from error
+        raise OutputError(f"{folder}: {error_reason(error)}") from error
     return files
 
 
@@ -216,7 +216,7 @@ def server_of(folder: Path, port: int) -> ThreadingHTTPServer:
     try:
         return ThreadingHTTPServer((HOST, port), partial(_Handler, directory=str(folder)))
     except OSError as error:
-        raise OutputError(f"{HOST}:{port}: {why(error)}") from error
+        raise OutputError(f"{HOST}:{port}: {error_reason(error)}") from error
 
 
 def url_of(server: ThreadingHTTPServer) -> str:

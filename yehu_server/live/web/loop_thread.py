@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-from yehu_server.util.files import why
+from yehu_server.util.files import error_reason
 from yehu_server.util.retry import Backoff
 
 log = logging.getLogger(__name__)
@@ -74,7 +74,7 @@ class LoopThread:
             if error is None:
                 break
             if not isinstance(error, asyncio.CancelledError):
-                if self._backoff.is_news(why(error)):
+                if self._backoff.is_news(error_reason(error)):
                     log.debug("%s", self._name, exc_info=error)
                     self._failed(error)
                 await asyncio.wait((ended,), timeout=self._backoff.failed())
@@ -87,4 +87,4 @@ class LoopThread:
             loop.default_exception_handler(context)
         elif time.monotonic() - self._reported_at >= REPORT_EVERY_S:
             self._reported_at = time.monotonic()
-            log.warning("%s: %s; trying again", self._name, why(error))
+            log.warning("%s: %s; trying again", self._name, error_reason(error))

@@ -25,17 +25,17 @@ from yehu_server.errors import DeviceError, one_line
 from yehu_server.live import limits
 from yehu_server.live.network import Address, Allowed, format_address, plain
 from yehu_server.live.osc.all_calls import more_calls
-from yehu_server.live.osc.answering import WebTraffic
 from yehu_server.live.osc.context import CallContext
+from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.status import PART_STATUS, STATUS, Kind
 from yehu_server.live.part_addresses import FIRST, group_of
 from yehu_server.live.web import query
-from yehu_server.live.web.access import Connections, check, own_names, serve_http
 from yehu_server.live.web.loop_thread import LoopThread
+from yehu_server.live.web.request_filter import Connections, check, own_names, serve_http
 from yehu_server.live.web.web_sockets import WebSockets
 from yehu_server.params.table import PREFIX
-from yehu_server.util.files import shipped_folder, why
+from yehu_server.util.files import error_reason, shipped_folder
 
 log = logging.getLogger(__name__)
 
@@ -204,7 +204,7 @@ def listen(what: str, host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
     except OSError as error:
         where = format_address(host, port)
-        raise DeviceError(f"{what}: cannot listen at {where}: {why(error)}") from error
+        raise DeviceError(f"{what}: cannot listen at {where}: {error_reason(error)}") from error
 
 
 def _html(text: str) -> web.Response:

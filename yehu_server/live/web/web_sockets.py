@@ -11,9 +11,9 @@ from aiohttp import WSMsgType, web
 
 from yehu_server.errors import RefusedError, shortened
 from yehu_server.live import limits
-from yehu_server.live.osc.answering import Peer, WebTraffic
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.osc_addresses import readable
+from yehu_server.live.osc.peers import Peer, WebTraffic
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.web.frames import TEXT, frame_of, write
 from yehu_server.params.table import PREFIX

@@ -16,7 +16,7 @@ from itertools import pairwise
 from yehu_server.errors import ScoreError
 from yehu_server.scores.abc.fields import SHORTCUTS, metre_of, order_of_parts
 from yehu_server.scores.abc.voice import VoiceReader
-from yehu_server.scores.score import naming, read_score_bytes
+from yehu_server.scores.score import errors_name, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_PARTS, Written
 
@@ -32,7 +32,7 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
     Raises ScoreError, one line naming the file: where it cannot be read, has no tune, or no such
     one.
     """
-    with naming(path):
+    with errors_name(path):
         head, tunes = _tunes(_decoded(read_score_bytes(path, MAX_BYTES)))
         if not tunes:
             raise ScoreError("has no tune of ABC, which begins with X:")

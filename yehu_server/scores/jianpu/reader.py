@@ -25,7 +25,7 @@ from yehu_server.scores.score import (
     COMMON_TIME,
     KeySignature,
     Metre,
-    naming,
+    errors_name,
     nearest_key,
     printable,
     read_score_bytes,
@@ -48,7 +48,7 @@ def read_jianpu(path: str | os.PathLike[str]) -> Written:
     where it is missing, larger than 1 MiB or no text; has no notes, or more than
     `form.MAX_UNFOLDED` in a part; where a repeat or tuplet does not end.
     """
-    with naming(path):
+    with errors_name(path):
         return parse_jianpu(read_score_bytes(path, MAX_BYTES))
 
 

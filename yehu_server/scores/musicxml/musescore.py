@@ -11,7 +11,7 @@ from pathlib import Path
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.reader import read_musicxml
-from yehu_server.scores.score import naming, read_score_bytes
+from yehu_server.scores.score import errors_name, read_score_bytes
 from yehu_server.scores.written.notated import MAX_BYTES, Written
 
 # The newest first: an older one does not read its files. `mscore` is MuseScore 2 on Debian.
@@ -28,7 +28,7 @@ def read_musescore(path: Path) -> Written:
     Raises ScoreError, one line naming the file: where it cannot be read, or there is no such
     program, how to export it.
     """
-    with naming(path):
+    with errors_name(path):
         read_score_bytes(path, MAX_BYTES)
         with tempfile.TemporaryDirectory(prefix="yehu-server-") as folder:
             target = Path(folder) / "score.musicxml"

@@ -22,7 +22,7 @@ from xml.parsers import expat
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.bars import BarReader
-from yehu_server.scores.score import naming, printable, read_score_bytes
+from yehu_server.scores.score import errors_name, printable, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_BYTES, MAX_PARTS, Written
 
@@ -49,7 +49,7 @@ def read_musicxml(path: str | os.PathLike[str]) -> Written:
     Raises ScoreError, one line naming the file, whatever its bytes: where it cannot be read, is no
     MusicXML or is beyond all bounds.
     """
-    with naming(path):
+    with errors_name(path):
         data = read_score_bytes(path, MAX_XML_BYTES)
         return written_of(parse(unpacked(data) if data.startswith(ZIP) else data))
 
@@ -59,7 +59,7 @@ def written_of(root: Element) -> Written:
     if root.tag == "score-timewise":
         root = _partwise(root)
     if root.tag != "score-partwise":
-        raise ScoreError(f"is no MusicXML score: its root is <{printable(root.tag)}>")
+        raise ScoreError(f"is not a MusicXML score: its root is <{printable(root.tag)}>")
     unknown: Counter[str] = Counter()
     warnings: Counter[str] = Counter()
     elements = root.findall("part")
@@ -151,9 +151,9 @@ def parse(data: bytes) -> ET.Element:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code) if error.code else "not well-formed"
-        raise ScoreError(f"line {error.lineno}: is no XML ({reason})") from None
+        raise ScoreError(f"line {error.lineno}: is not XML ({reason})") from None
     except (ValueError, LookupError) as error:  # an encoding that is unknown, or has many bytes
-        raise ScoreError(f"is no XML ({type(error).__name__})") from None
+        raise ScoreError(f"is not XML ({type(error).__name__})") from None
     return builder.root()
 
 

@@ -32,7 +32,7 @@ from yehu_server.scores.score import (
     ScorePart,
     check_duration,
     concatenate,
-    naming,
+    errors_name,
     read_score_bytes,
 )
 from yehu_server.scores.smf.chunks import Part, read_parts, unwrapped
@@ -106,7 +106,7 @@ def read_score(
     or too long, not a MIDI file, or without one channel message to play.
     """
     faults = DamageReport()
-    with naming(path):
+    with errors_name(path):
         score = _parse(read_score_bytes(path, MAX_BYTES), song, max_duration_h, faults)
         if strict:
             faults.refuse()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 
-from yehu_server.live.web.access import own_names, refusal
+from yehu_server.live.web.request_filter import own_names, refusal
 
 NAMES = frozenset({"localhost", "stage", "stage.local"})
 

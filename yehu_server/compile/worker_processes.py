@@ -45,7 +45,7 @@ def compile_apart(
         helpers, threads = [], []
         for _ in range(min(processes, os.cpu_count() or 1, len(functions))):
             helper = subprocess.Popen(  # noqa: S603 - our own
-                python_command("yehu_server.compile.helpers"),
+                python_command("yehu_server.compile.worker_processes"),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,

@@ -970,17 +970,17 @@
       104,
       48
      ],
-     "varname": "/playing/speed",
+     "varname": "/playing/intensity",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/speed",
-       "parameter_shortname": "speed",
-       "parameter_mmin": 0.03,
-       "parameter_mmax": 0.6,
+       "parameter_longname": "/playing/intensity",
+       "parameter_shortname": "intensity",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f m/s"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -997,7 +997,7 @@
       104,
       22
      ],
-     "text": "0.03 to 0.6 m/s",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       128,
@@ -1036,14 +1036,14 @@
      "patching_rect": [
       117.0,
       1896,
-      189,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/speed"
+     "text": "route /yehu/playing/intensity"
     }
    },
    {
@@ -1053,7 +1053,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      330.0,
+      358.0,
       1896,
       91,
       22
@@ -1073,13 +1073,13 @@
      "patching_rect": [
       16.0,
       1926,
-      126,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.2"
+     "text": "loadmess set 0.75"
     }
    },
    {
@@ -1089,15 +1089,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      173.0,
       1926,
-      203,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/speed"
+     "text": "prepend /yehu/playing/intensity"
     }
    },
    {
@@ -1107,7 +1107,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      428.0,
       1926,
       98,
       22
@@ -1139,17 +1139,17 @@
       104,
       48
      ],
-     "varname": "/playing/velocity",
+     "varname": "/playing/speed",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/velocity",
-       "parameter_shortname": "velocity",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/speed",
+       "parameter_shortname": "speed",
+       "parameter_mmin": 0.03,
+       "parameter_mmax": 0.6,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f m/s"
       }
      }
     }
@@ -1166,7 +1166,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0.03 to 0.6 m/s",
      "presentation": 1,
      "presentation_rect": [
       240,
@@ -1205,14 +1205,14 @@
      "patching_rect": [
       117.0,
       1956,
-      210,
+      189,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/velocity"
+     "text": "route /yehu/playing/speed"
     }
    },
    {
@@ -1222,7 +1222,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      351.0,
+      330.0,
       1956,
       91,
       22
@@ -1242,13 +1242,13 @@
      "patching_rect": [
       16.0,
       1986,
-      133,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.63"
+     "text": "loadmess set 0.2"
     }
    },
    {
@@ -1258,15 +1258,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      166.0,
       1986,
-      224,
+      203,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/velocity"
+     "text": "prepend /yehu/playing/speed"
     }
    },
    {
@@ -1276,7 +1276,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      421.0,
+      393.0,
       1986,
       98,
       22
@@ -1308,14 +1308,14 @@
       104,
       48
      ],
-     "varname": "/playing/pressure",
+     "varname": "/playing/velocity",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/pressure",
-       "parameter_shortname": "pressure",
-       "parameter_mmin": 0.05,
-       "parameter_mmax": 2.0,
+       "parameter_longname": "/playing/velocity",
+       "parameter_shortname": "velocity",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -1335,7 +1335,7 @@
       104,
       22
      ],
-     "text": "0.05 to 2",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       352,
@@ -1381,7 +1381,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/pressure"
+     "text": "route /yehu/playing/velocity"
     }
    },
    {
@@ -1411,13 +1411,13 @@
      "patching_rect": [
       16.0,
       2046,
-      126,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.4"
+     "text": "loadmess set 0.63"
     }
    },
    {
@@ -1427,7 +1427,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      173.0,
       2046,
       224,
       22
@@ -1435,7 +1435,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/pressure"
+     "text": "prepend /yehu/playing/velocity"
     }
    },
    {
@@ -1445,7 +1445,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      421.0,
       2046,
       98,
       22
@@ -1477,13 +1477,13 @@
       104,
       48
      ],
-     "varname": "/playing/brilliance",
+     "varname": "/playing/pressure",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/brilliance",
-       "parameter_shortname": "brilliance",
-       "parameter_mmin": 0.0,
+       "parameter_longname": "/playing/pressure",
+       "parameter_shortname": "pressure",
+       "parameter_mmin": 0.05,
        "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -1504,7 +1504,7 @@
       104,
       22
      ],
-     "text": "0 to 2",
+     "text": "0.05 to 2",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -1543,14 +1543,14 @@
      "patching_rect": [
       117.0,
       2076,
-      224,
+      210,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/brilliance"
+     "text": "route /yehu/playing/pressure"
     }
    },
    {
@@ -1560,7 +1560,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      351.0,
       2076,
       91,
       22
@@ -1580,13 +1580,13 @@
      "patching_rect": [
       16.0,
       2106,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0.4"
     }
    },
    {
@@ -1596,15 +1596,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2106,
-      238,
+      224,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/brilliance"
+     "text": "prepend /yehu/playing/pressure"
     }
    },
    {
@@ -1646,14 +1646,14 @@
       104,
       48
      ],
-     "varname": "/playing/bow_position",
+     "varname": "/playing/brilliance",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bow_position",
-       "parameter_shortname": "bow position",
-       "parameter_mmin": 0.05,
-       "parameter_mmax": 0.3,
+       "parameter_longname": "/playing/brilliance",
+       "parameter_shortname": "brilliance",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -1673,7 +1673,7 @@
       104,
       22
      ],
-     "text": "0.05 to 0.3",
+     "text": "0 to 2",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -1712,14 +1712,14 @@
      "patching_rect": [
       117.0,
       2136,
-      238,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bow_position"
+     "text": "route /yehu/playing/brilliance"
     }
    },
    {
@@ -1729,7 +1729,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      379.0,
+      365.0,
       2136,
       91,
       22
@@ -1749,13 +1749,13 @@
      "patching_rect": [
       16.0,
       2166,
-      133,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.13"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -1765,15 +1765,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      152.0,
       2166,
-      252,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bow_position"
+     "text": "prepend /yehu/playing/brilliance"
     }
    },
    {
@@ -1783,7 +1783,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      449.0,
+      414.0,
       2166,
       98,
       22
@@ -1815,17 +1815,17 @@
       104,
       48
      ],
-     "varname": "/playing/tremolo",
+     "varname": "/playing/bow_position",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/tremolo",
-       "parameter_shortname": "tremolo",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 20.0,
+       "parameter_longname": "/playing/bow_position",
+       "parameter_shortname": "bow position",
+       "parameter_mmin": 0.05,
+       "parameter_mmax": 0.3,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f 1/s"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -1842,7 +1842,7 @@
       104,
       22
      ],
-     "text": "0 to 20 1/s",
+     "text": "0.05 to 0.3",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -1881,14 +1881,14 @@
      "patching_rect": [
       117.0,
       2196,
-      203,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/tremolo"
+     "text": "route /yehu/playing/bow_position"
     }
    },
    {
@@ -1898,7 +1898,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      379.0,
       2196,
       91,
       22
@@ -1918,13 +1918,13 @@
      "patching_rect": [
       16.0,
       2226,
-      112,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.13"
     }
    },
    {
@@ -1934,15 +1934,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      173.0,
       2226,
-      217,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/tremolo"
+     "text": "prepend /yehu/playing/bow_position"
     }
    },
    {
@@ -1952,7 +1952,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      449.0,
       2226,
       98,
       22
@@ -1984,17 +1984,17 @@
       104,
       48
      ],
-     "varname": "/playing/tremolo_depth",
+     "varname": "/playing/tremolo",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/tremolo_depth",
-       "parameter_shortname": "tremolo depth",
+       "parameter_longname": "/playing/tremolo",
+       "parameter_shortname": "tremolo",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 20.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f 1/s"
       }
      }
     }
@@ -2011,7 +2011,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 20 1/s",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -2050,14 +2050,14 @@
      "patching_rect": [
       117.0,
       2256,
-      245,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/tremolo_depth"
+     "text": "route /yehu/playing/tremolo"
     }
    },
    {
@@ -2067,7 +2067,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
+      344.0,
       2256,
       91,
       22
@@ -2105,13 +2105,13 @@
      "patching_rect": [
       152.0,
       2286,
-      259,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/tremolo_depth"
+     "text": "prepend /yehu/playing/tremolo"
     }
    },
    {
@@ -2121,7 +2121,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      435.0,
+      393.0,
       2286,
       98,
       22
@@ -2153,12 +2153,12 @@
       104,
       48
      ],
-     "varname": "/playing/pizzicato",
+     "varname": "/playing/tremolo_depth",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/pizzicato",
-       "parameter_shortname": "pizzicato",
+       "parameter_longname": "/playing/tremolo_depth",
+       "parameter_shortname": "tremolo depth",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -2219,14 +2219,14 @@
      "patching_rect": [
       117.0,
       2316,
-      217,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/pizzicato"
+     "text": "route /yehu/playing/tremolo_depth"
     }
    },
    {
@@ -2236,7 +2236,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      386.0,
       2316,
       91,
       22
@@ -2274,13 +2274,13 @@
      "patching_rect": [
       152.0,
       2346,
-      231,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/pizzicato"
+     "text": "prepend /yehu/playing/tremolo_depth"
     }
    },
    {
@@ -2290,7 +2290,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      435.0,
       2346,
       98,
       22
@@ -2322,14 +2322,14 @@
       104,
       48
      ],
-     "varname": "/playing/articulation",
+     "varname": "/playing/pizzicato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/articulation",
-       "parameter_shortname": "articulation",
+       "parameter_longname": "/playing/pizzicato",
+       "parameter_shortname": "pizzicato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 127.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2349,7 +2349,7 @@
       104,
       22
      ],
-     "text": "0 to 127",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -2388,14 +2388,14 @@
      "patching_rect": [
       117.0,
       2376,
-      238,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/articulation"
+     "text": "route /yehu/playing/pizzicato"
     }
    },
    {
@@ -2405,7 +2405,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      379.0,
+      358.0,
       2376,
       91,
       22
@@ -2443,13 +2443,13 @@
      "patching_rect": [
       152.0,
       2406,
-      252,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/articulation"
+     "text": "prepend /yehu/playing/pizzicato"
     }
    },
    {
@@ -2459,7 +2459,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      407.0,
       2406,
       98,
       22
@@ -2491,14 +2491,14 @@
       104,
       48
      ],
-     "varname": "/playing/string",
+     "varname": "/playing/articulation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/string",
-       "parameter_shortname": "string",
+       "parameter_longname": "/playing/articulation",
+       "parameter_shortname": "articulation",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_mmax": 127.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2518,7 +2518,7 @@
       104,
       22
      ],
-     "text": "0 to 2",
+     "text": "0 to 127",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -2557,14 +2557,14 @@
      "patching_rect": [
       117.0,
       2436,
-      196,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/string"
+     "text": "route /yehu/playing/articulation"
     }
    },
    {
@@ -2574,7 +2574,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      379.0,
       2436,
       91,
       22
@@ -2612,13 +2612,13 @@
      "patching_rect": [
       152.0,
       2466,
-      210,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/string"
+     "text": "prepend /yehu/playing/articulation"
     }
    },
    {
@@ -2628,7 +2628,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      428.0,
       2466,
       98,
       22
@@ -2660,14 +2660,14 @@
       104,
       48
      ],
-     "varname": "/playing/direction",
+     "varname": "/playing/string",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/direction",
-       "parameter_shortname": "direction",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/string",
+       "parameter_shortname": "string",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2687,7 +2687,7 @@
       104,
       22
      ],
-     "text": "-1 to 1",
+     "text": "0 to 2",
      "presentation": 1,
      "presentation_rect": [
       128,
@@ -2726,14 +2726,14 @@
      "patching_rect": [
       117.0,
       2496,
-      217,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/direction"
+     "text": "route /yehu/playing/string"
     }
    },
    {
@@ -2743,7 +2743,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      337.0,
       2496,
       91,
       22
@@ -2781,13 +2781,13 @@
      "patching_rect": [
       152.0,
       2526,
-      231,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/direction"
+     "text": "prepend /yehu/playing/string"
     }
    },
    {
@@ -2797,7 +2797,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      386.0,
       2526,
       98,
       22
@@ -2829,17 +2829,17 @@
       104,
       48
      ],
-     "varname": "/playing/bow_length",
+     "varname": "/playing/direction",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bow_length",
-       "parameter_shortname": "bow length",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 2.0,
+       "parameter_longname": "/playing/direction",
+       "parameter_shortname": "direction",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f m"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -2856,7 +2856,7 @@
       104,
       22
      ],
-     "text": "0 to 2 m",
+     "text": "-1 to 1",
      "presentation": 1,
      "presentation_rect": [
       240,
@@ -2895,14 +2895,14 @@
      "patching_rect": [
       117.0,
       2556,
-      224,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bow_length"
+     "text": "route /yehu/playing/direction"
     }
    },
    {
@@ -2912,7 +2912,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      358.0,
       2556,
       91,
       22
@@ -2932,13 +2932,13 @@
      "patching_rect": [
       16.0,
       2586,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.7"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -2948,15 +2948,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2586,
-      238,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bow_length"
+     "text": "prepend /yehu/playing/direction"
     }
    },
    {
@@ -2966,7 +2966,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      407.0,
       2586,
       98,
       22
@@ -2998,17 +2998,17 @@
       104,
       48
      ],
-     "varname": "/playing/note_length",
+     "varname": "/playing/bow_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/note_length",
-       "parameter_shortname": "note length",
+       "parameter_longname": "/playing/bow_length",
+       "parameter_shortname": "bow length",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 60.0,
+       "parameter_mmax": 2.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f s"
+       "parameter_units": "%.3f m"
       }
      }
     }
@@ -3025,7 +3025,7 @@
       104,
       22
      ],
-     "text": "0 to 60 s",
+     "text": "0 to 2 m",
      "presentation": 1,
      "presentation_rect": [
       352,
@@ -3064,14 +3064,14 @@
      "patching_rect": [
       117.0,
       2616,
-      231,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/note_length"
+     "text": "route /yehu/playing/bow_length"
     }
    },
    {
@@ -3081,7 +3081,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      372.0,
+      365.0,
       2616,
       91,
       22
@@ -3101,13 +3101,13 @@
      "patching_rect": [
       16.0,
       2646,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.7"
     }
    },
    {
@@ -3117,15 +3117,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2646,
-      245,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/note_length"
+     "text": "prepend /yehu/playing/bow_length"
     }
    },
    {
@@ -3135,7 +3135,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      421.0,
+      428.0,
       2646,
       98,
       22
@@ -3167,17 +3167,17 @@
       104,
       48
      ],
-     "varname": "/playing/press",
+     "varname": "/playing/note_length",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.3,
-       "parameter_mmax": 6.0,
+       "parameter_longname": "/playing/note_length",
+       "parameter_shortname": "note length",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 60.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f N"
+       "parameter_units": "%.3f s"
       }
      }
     }
@@ -3194,7 +3194,7 @@
       104,
       22
      ],
-     "text": "0.3 to 6 N",
+     "text": "0 to 60 s",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -3233,14 +3233,14 @@
      "patching_rect": [
       117.0,
       2676,
-      189,
+      231,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/press"
+     "text": "route /yehu/playing/note_length"
     }
    },
    {
@@ -3250,7 +3250,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      330.0,
+      372.0,
       2676,
       91,
       22
@@ -3270,13 +3270,13 @@
      "patching_rect": [
       16.0,
       2706,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1.5"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3286,15 +3286,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2706,
-      203,
+      245,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/press"
+     "text": "prepend /yehu/playing/note_length"
     }
    },
    {
@@ -3304,7 +3304,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      421.0,
       2706,
       98,
       22
@@ -3336,17 +3336,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato",
+     "varname": "/playing/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato",
-       "parameter_shortname": "vibrato",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 100.0,
+       "parameter_longname": "/playing/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.3,
+       "parameter_mmax": 6.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f cents"
+       "parameter_units": "%.3f N"
       }
      }
     }
@@ -3363,7 +3363,7 @@
       104,
       22
      ],
-     "text": "0 to 100 cents",
+     "text": "0.3 to 6 N",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -3402,14 +3402,14 @@
      "patching_rect": [
       117.0,
       2736,
-      203,
+      189,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato"
+     "text": "route /yehu/playing/press"
     }
    },
    {
@@ -3419,7 +3419,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      330.0,
       2736,
       91,
       22
@@ -3439,13 +3439,13 @@
      "patching_rect": [
       16.0,
       2766,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1.5"
     }
    },
    {
@@ -3455,15 +3455,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       2766,
-      217,
+      203,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato"
+     "text": "prepend /yehu/playing/press"
     }
    },
    {
@@ -3505,17 +3505,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_press",
+     "varname": "/playing/vibrato",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_press",
-       "parameter_shortname": "vibrato press",
+       "parameter_longname": "/playing/vibrato",
+       "parameter_shortname": "vibrato",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 100.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f cents"
       }
      }
     }
@@ -3532,7 +3532,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 100 cents",
      "presentation": 1,
      "presentation_rect": [
       688,
@@ -3571,14 +3571,14 @@
      "patching_rect": [
       117.0,
       2796,
-      245,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_press"
+     "text": "route /yehu/playing/vibrato"
     }
    },
    {
@@ -3588,7 +3588,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
+      344.0,
       2796,
       91,
       22
@@ -3626,13 +3626,13 @@
      "patching_rect": [
       152.0,
       2826,
-      259,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_press"
+     "text": "prepend /yehu/playing/vibrato"
     }
    },
    {
@@ -3642,7 +3642,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      435.0,
+      393.0,
       2826,
       98,
       22
@@ -3674,17 +3674,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_rate",
+     "varname": "/playing/vibrato_press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_rate",
-       "parameter_shortname": "vibrato rate",
-       "parameter_mmin": 2.0,
-       "parameter_mmax": 10.0,
+       "parameter_longname": "/playing/vibrato_press",
+       "parameter_shortname": "vibrato press",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f Hz"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -3701,7 +3701,7 @@
       104,
       22
      ],
-     "text": "2 to 10 Hz",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -3740,14 +3740,14 @@
      "patching_rect": [
       117.0,
       2856,
-      238,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_rate"
+     "text": "route /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3757,7 +3757,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      379.0,
+      386.0,
       2856,
       91,
       22
@@ -3783,7 +3783,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 6"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -3795,13 +3795,13 @@
      "patching_rect": [
       152.0,
       2886,
-      252,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_rate"
+     "text": "prepend /yehu/playing/vibrato_press"
     }
    },
    {
@@ -3811,7 +3811,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      435.0,
       2886,
       98,
       22
@@ -3843,17 +3843,17 @@
       104,
       48
      ],
-     "varname": "/playing/vibrato_delay",
+     "varname": "/playing/vibrato_rate",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/vibrato_delay",
-       "parameter_shortname": "vibrato delay",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 3000.0,
+       "parameter_longname": "/playing/vibrato_rate",
+       "parameter_shortname": "vibrato rate",
+       "parameter_mmin": 2.0,
+       "parameter_mmax": 10.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f Hz"
       }
      }
     }
@@ -3870,7 +3870,7 @@
       104,
       22
      ],
-     "text": "0 to 3000 ms",
+     "text": "2 to 10 Hz",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -3909,14 +3909,14 @@
      "patching_rect": [
       117.0,
       2916,
-      245,
+      238,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/vibrato_delay"
+     "text": "route /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3926,7 +3926,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      386.0,
+      379.0,
       2916,
       91,
       22
@@ -3946,13 +3946,13 @@
      "patching_rect": [
       16.0,
       2946,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 500"
+     "text": "loadmess set 6"
     }
    },
    {
@@ -3962,15 +3962,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       2946,
-      259,
+      252,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/vibrato_delay"
+     "text": "prepend /yehu/playing/vibrato_rate"
     }
    },
    {
@@ -3980,7 +3980,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      449.0,
+      428.0,
       2946,
       98,
       22
@@ -4012,17 +4012,17 @@
       104,
       48
      ],
-     "varname": "/playing/bend",
+     "varname": "/playing/vibrato_delay",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend",
-       "parameter_shortname": "bend",
-       "parameter_mmin": -48.0,
-       "parameter_mmax": 48.0,
+       "parameter_longname": "/playing/vibrato_delay",
+       "parameter_shortname": "vibrato delay",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 3000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f semitones"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -4039,7 +4039,7 @@
       104,
       22
      ],
-     "text": "-48 to 48 semitones",
+     "text": "0 to 3000 ms",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -4078,14 +4078,14 @@
      "patching_rect": [
       117.0,
       2976,
-      182,
+      245,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend"
+     "text": "route /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -4095,7 +4095,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      323.0,
+      386.0,
       2976,
       91,
       22
@@ -4115,13 +4115,13 @@
      "patching_rect": [
       16.0,
       3006,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 500"
     }
    },
    {
@@ -4131,15 +4131,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       3006,
-      196,
+      259,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend"
+     "text": "prepend /yehu/playing/vibrato_delay"
     }
    },
    {
@@ -4149,7 +4149,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      372.0,
+      449.0,
       3006,
       98,
       22
@@ -4181,13 +4181,13 @@
       104,
       48
      ],
-     "varname": "/playing/bend_range",
+     "varname": "/playing/bend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/bend_range",
-       "parameter_shortname": "bend range",
-       "parameter_mmin": 0.0,
+       "parameter_longname": "/playing/bend",
+       "parameter_shortname": "bend",
+       "parameter_mmin": -48.0,
        "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -4208,7 +4208,7 @@
       104,
       22
      ],
-     "text": "0 to 48 semitones",
+     "text": "-48 to 48 semitones",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -4247,14 +4247,14 @@
      "patching_rect": [
       117.0,
       3036,
-      224,
+      182,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/bend_range"
+     "text": "route /yehu/playing/bend"
     }
    },
    {
@@ -4264,7 +4264,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      323.0,
       3036,
       91,
       22
@@ -4290,7 +4290,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 2"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -4302,13 +4302,13 @@
      "patching_rect": [
       152.0,
       3066,
-      238,
+      196,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/bend_range"
+     "text": "prepend /yehu/playing/bend"
     }
    },
    {
@@ -4318,7 +4318,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      372.0,
       3066,
       98,
       22
@@ -4350,17 +4350,17 @@
       104,
       48
      ],
-     "varname": "/playing/volume",
+     "varname": "/playing/bend_range",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/volume",
-       "parameter_shortname": "volume",
+       "parameter_longname": "/playing/bend_range",
+       "parameter_shortname": "bend range",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_mmax": 48.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f semitones"
       }
      }
     }
@@ -4377,7 +4377,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "0 to 48 semitones",
      "presentation": 1,
      "presentation_rect": [
       128,
@@ -4416,14 +4416,14 @@
      "patching_rect": [
       117.0,
       3096,
-      196,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/volume"
+     "text": "route /yehu/playing/bend_range"
     }
    },
    {
@@ -4433,7 +4433,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      365.0,
       3096,
       91,
       22
@@ -4459,7 +4459,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 2"
     }
    },
    {
@@ -4471,13 +4471,13 @@
      "patching_rect": [
       152.0,
       3126,
-      210,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/volume"
+     "text": "prepend /yehu/playing/bend_range"
     }
    },
    {
@@ -4487,7 +4487,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      414.0,
       3126,
       98,
       22
@@ -4519,12 +4519,12 @@
       104,
       48
      ],
-     "varname": "/playing/expression",
+     "varname": "/playing/volume",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/expression",
-       "parameter_shortname": "expression",
+       "parameter_longname": "/playing/volume",
+       "parameter_shortname": "volume",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4585,14 +4585,14 @@
      "patching_rect": [
       117.0,
       3156,
-      224,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/expression"
+     "text": "route /yehu/playing/volume"
     }
    },
    {
@@ -4602,7 +4602,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      337.0,
       3156,
       91,
       22
@@ -4640,13 +4640,13 @@
      "patching_rect": [
       152.0,
       3186,
-      238,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/expression"
+     "text": "prepend /yehu/playing/volume"
     }
    },
    {
@@ -4656,7 +4656,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      386.0,
       3186,
       98,
       22
@@ -4688,12 +4688,12 @@
       104,
       48
      ],
-     "varname": "/playing/assist",
+     "varname": "/playing/expression",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/assist",
-       "parameter_shortname": "assist",
+       "parameter_longname": "/playing/expression",
+       "parameter_shortname": "expression",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4754,14 +4754,14 @@
      "patching_rect": [
       117.0,
       3216,
-      196,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/assist"
+     "text": "route /yehu/playing/expression"
     }
    },
    {
@@ -4771,7 +4771,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      365.0,
       3216,
       91,
       22
@@ -4809,13 +4809,13 @@
      "patching_rect": [
       152.0,
       3246,
-      210,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/assist"
+     "text": "prepend /yehu/playing/expression"
     }
    },
    {
@@ -4825,7 +4825,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      414.0,
       3246,
       98,
       22
@@ -4857,12 +4857,12 @@
       104,
       48
      ],
-     "varname": "/playing/variation",
+     "varname": "/playing/assist",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/variation",
-       "parameter_shortname": "variation",
+       "parameter_longname": "/playing/assist",
+       "parameter_shortname": "assist",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -4923,14 +4923,14 @@
      "patching_rect": [
       117.0,
       3276,
-      217,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/variation"
+     "text": "route /yehu/playing/assist"
     }
    },
    {
@@ -4940,7 +4940,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      337.0,
       3276,
       91,
       22
@@ -4960,13 +4960,13 @@
      "patching_rect": [
       16.0,
       3306,
-      133,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.25"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -4976,15 +4976,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      152.0,
       3306,
-      231,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/variation"
+     "text": "prepend /yehu/playing/assist"
     }
    },
    {
@@ -4994,7 +4994,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      428.0,
+      386.0,
       3306,
       98,
       22
@@ -5026,12 +5026,12 @@
       104,
       48
      ],
-     "varname": "/playing/listening",
+     "varname": "/playing/variation",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/listening",
-       "parameter_shortname": "listening",
+       "parameter_longname": "/playing/variation",
+       "parameter_shortname": "variation",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -5099,7 +5099,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/playing/listening"
+     "text": "route /yehu/playing/variation"
     }
    },
    {
@@ -5129,13 +5129,13 @@
      "patching_rect": [
       16.0,
       3366,
-      112,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0.25"
     }
    },
    {
@@ -5145,7 +5145,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      173.0,
       3366,
       231,
       22
@@ -5153,7 +5153,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/listening"
+     "text": "prepend /yehu/playing/variation"
     }
    },
    {
@@ -5163,7 +5163,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      428.0,
       3366,
       98,
       22
@@ -5195,12 +5195,12 @@
       104,
       48
      ],
-     "varname": "/playing/phrasing",
+     "varname": "/playing/listening",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/phrasing",
-       "parameter_shortname": "phrasing",
+       "parameter_longname": "/playing/listening",
+       "parameter_shortname": "listening",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -5261,14 +5261,14 @@
      "patching_rect": [
       117.0,
       3396,
-      210,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/phrasing"
+     "text": "route /yehu/playing/listening"
     }
    },
    {
@@ -5278,7 +5278,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      351.0,
+      358.0,
       3396,
       91,
       22
@@ -5304,7 +5304,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -5316,13 +5316,13 @@
      "patching_rect": [
       152.0,
       3426,
-      224,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/phrasing"
+     "text": "prepend /yehu/playing/listening"
     }
    },
    {
@@ -5332,7 +5332,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
+      407.0,
       3426,
       98,
       22
@@ -5364,14 +5364,14 @@
       104,
       48
      ],
-     "varname": "/playing/section",
+     "varname": "/playing/phrasing",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/section",
-       "parameter_shortname": "section",
-       "parameter_mmin": 1.0,
-       "parameter_mmax": 16.0,
+       "parameter_longname": "/playing/phrasing",
+       "parameter_shortname": "phrasing",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -5391,7 +5391,7 @@
       104,
       22
      ],
-     "text": "1 to 16",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       800,
@@ -5430,14 +5430,14 @@
      "patching_rect": [
       117.0,
       3456,
-      203,
+      210,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/section"
+     "text": "route /yehu/playing/phrasing"
     }
    },
    {
@@ -5447,7 +5447,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      351.0,
       3456,
       91,
       22
@@ -5473,7 +5473,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -5485,13 +5485,13 @@
      "patching_rect": [
       152.0,
       3486,
-      217,
+      224,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/section"
+     "text": "prepend /yehu/playing/phrasing"
     }
    },
    {
@@ -5501,7 +5501,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      400.0,
       3486,
       98,
       22
@@ -5533,17 +5533,17 @@
       104,
       48
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/section",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/section",
+       "parameter_shortname": "section",
+       "parameter_mmin": 1.0,
+       "parameter_mmax": 16.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -5560,7 +5560,7 @@
       104,
       22
      ],
-     "text": "5 to 500 ms",
+     "text": "1 to 16",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -5599,14 +5599,14 @@
      "patching_rect": [
       117.0,
       3516,
-      196,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/section"
     }
    },
    {
@@ -5616,7 +5616,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      344.0,
       3516,
       91,
       22
@@ -5636,13 +5636,13 @@
      "patching_rect": [
       16.0,
       3546,
-      119,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -5652,15 +5652,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      159.0,
+      152.0,
       3546,
-      210,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/section"
     }
    },
    {
@@ -5702,14 +5702,14 @@
       104,
       48
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
        "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
@@ -5729,7 +5729,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "5 to 500 ms",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -5768,14 +5768,14 @@
      "patching_rect": [
       117.0,
       3576,
-      203,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -5785,7 +5785,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      337.0,
       3576,
       91,
       22
@@ -5811,7 +5811,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 40"
     }
    },
    {
@@ -5823,13 +5823,13 @@
      "patching_rect": [
       159.0,
       3606,
-      217,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -5839,7 +5839,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
+      393.0,
       3606,
       98,
       22
@@ -5871,17 +5871,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/release",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -5898,7 +5898,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "5 to 2000 ms",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -5937,14 +5937,14 @@
      "patching_rect": [
       117.0,
       3636,
-      224,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/release"
     }
    },
    {
@@ -5954,7 +5954,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      344.0,
       3636,
       91,
       22
@@ -5974,13 +5974,13 @@
      "patching_rect": [
       16.0,
       3666,
-      112,
+      119,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 60"
     }
    },
    {
@@ -5990,15 +5990,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      159.0,
       3666,
-      238,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/release"
     }
    },
    {
@@ -6008,7 +6008,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      400.0,
       3666,
       98,
       22
@@ -6040,17 +6040,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/portamento",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -6067,7 +6067,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       128,
@@ -6106,14 +6106,14 @@
      "patching_rect": [
       117.0,
       3696,
-      259,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/portamento"
     }
    },
    {
@@ -6123,7 +6123,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      400.0,
+      365.0,
       3696,
       91,
       22
@@ -6143,13 +6143,13 @@
      "patching_rect": [
       16.0,
       3726,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -6159,15 +6159,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       3726,
-      273,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/portamento"
     }
    },
    {
@@ -6177,7 +6177,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      463.0,
+      414.0,
       3726,
       98,
       22
@@ -6189,6 +6189,175 @@
    {
     "box": {
      "id": "obj-294",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      646,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      646,
+      104,
+      48
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-295",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      696,
+      104,
+      22
+     ],
+     "text": "5 to 2000 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-296",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3756,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-297",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3756,
+      259,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-298",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      400.0,
+      3756,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-299",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3786,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-300",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      3786,
+      273,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-301",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      463.0,
+      3786,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-302",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6211,7 +6380,7 @@
    },
    {
     "box": {
-     "id": "obj-295",
+     "id": "obj-303",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6249,7 +6418,7 @@
    },
    {
     "box": {
-     "id": "obj-296",
+     "id": "obj-304",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6263,175 +6432,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      794,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-297",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      3756,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-298",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      3756,
-      161,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/bow/speed"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-299",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      302.0,
-      3756,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-300",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      3786,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-301",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      3786,
-      175,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/speed"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-302",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      351.0,
-      3786,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-303",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      744,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      744,
-      104,
-      48
-     ],
-     "varname": "/bow/side",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/bow/side",
-       "parameter_shortname": "side",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-304",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      794,
-      104,
-      22
-     ],
-     "text": "-1 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       794,
       104,
       22
@@ -6467,14 +6467,14 @@
      "patching_rect": [
       117.0,
       3816,
-      154,
+      161,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/bow/side"
+     "text": "route /yehu/bow/speed"
     }
    },
    {
@@ -6484,7 +6484,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      295.0,
+      302.0,
       3816,
       91,
       22
@@ -6522,13 +6522,13 @@
      "patching_rect": [
       152.0,
       3846,
-      168,
+      175,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/bow/side"
+     "text": "prepend /yehu/bow/speed"
     }
    },
    {
@@ -6538,7 +6538,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      344.0,
+      351.0,
       3846,
       98,
       22
@@ -6550,6 +6550,175 @@
    {
     "box": {
      "id": "obj-311",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      128,
+      744,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      744,
+      104,
+      48
+     ],
+     "varname": "/bow/side",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/side",
+       "parameter_shortname": "side",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-312",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      128,
+      794,
+      104,
+      22
+     ],
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-313",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3876,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-314",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3876,
+      154,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-315",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      295.0,
+      3876,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-316",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3906,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-317",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3906,
+      168,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-318",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      344.0,
+      3906,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-319",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6587,7 +6756,7 @@
    },
    {
     "box": {
-     "id": "obj-312",
+     "id": "obj-320",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6611,13 +6780,13 @@
    },
    {
     "box": {
-     "id": "obj-313",
+     "id": "obj-321",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3876,
+      3936,
       77,
       22
      ],
@@ -6629,13 +6798,13 @@
    },
    {
     "box": {
-     "id": "obj-314",
+     "id": "obj-322",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3876,
+      3936,
       161,
       22
      ],
@@ -6648,13 +6817,13 @@
    },
    {
     "box": {
-     "id": "obj-315",
+     "id": "obj-323",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      3876,
+      3936,
       91,
       22
      ],
@@ -6666,13 +6835,13 @@
    },
    {
     "box": {
-     "id": "obj-316",
+     "id": "obj-324",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3906,
+      3966,
       126,
       22
      ],
@@ -6684,13 +6853,13 @@
    },
    {
     "box": {
-     "id": "obj-317",
+     "id": "obj-325",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3906,
+      3966,
       175,
       22
      ],
@@ -6702,13 +6871,13 @@
    },
    {
     "box": {
-     "id": "obj-318",
+     "id": "obj-326",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      3906,
+      3966,
       98,
       22
      ],
@@ -6718,7 +6887,7 @@
    },
    {
     "box": {
-     "id": "obj-319",
+     "id": "obj-327",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6756,7 +6925,7 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-328",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6780,13 +6949,13 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3936,
+      3996,
       77,
       22
      ],
@@ -6798,13 +6967,13 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3936,
+      3996,
       182,
       22
      ],
@@ -6817,13 +6986,13 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      3936,
+      3996,
       91,
       22
      ],
@@ -6835,13 +7004,13 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3966,
+      4026,
       126,
       22
      ],
@@ -6853,13 +7022,13 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-333",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3966,
+      4026,
       196,
       22
      ],
@@ -6871,13 +7040,13 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-334",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      3966,
+      4026,
       98,
       22
      ],
@@ -6887,7 +7056,7 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-335",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6925,7 +7094,7 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-336",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6949,13 +7118,13 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3996,
+      4056,
       77,
       22
      ],
@@ -6967,13 +7136,13 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3996,
+      4056,
       168,
       22
      ],
@@ -6986,13 +7155,13 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      3996,
+      4056,
       91,
       22
      ],
@@ -7004,13 +7173,13 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4026,
+      4086,
       112,
       22
      ],
@@ -7022,13 +7191,13 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4026,
+      4086,
       182,
       22
      ],
@@ -7040,13 +7209,13 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-342",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       358.0,
-      4026,
+      4086,
       98,
       22
      ],
@@ -7056,7 +7225,7 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-343",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7094,7 +7263,7 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-344",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7118,13 +7287,13 @@
    },
    {
     "box": {
-     "id": "obj-337",
+     "id": "obj-345",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4056,
+      4116,
       77,
       22
      ],
@@ -7136,13 +7305,13 @@
    },
    {
     "box": {
-     "id": "obj-338",
+     "id": "obj-346",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4056,
+      4116,
       182,
       22
      ],
@@ -7155,13 +7324,13 @@
    },
    {
     "box": {
-     "id": "obj-339",
+     "id": "obj-347",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      4056,
+      4116,
       91,
       22
      ],
@@ -7173,13 +7342,13 @@
    },
    {
     "box": {
-     "id": "obj-340",
+     "id": "obj-348",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4086,
+      4146,
       133,
       22
      ],
@@ -7191,13 +7360,13 @@
    },
    {
     "box": {
-     "id": "obj-341",
+     "id": "obj-349",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4086,
+      4146,
       196,
       22
      ],
@@ -7209,13 +7378,13 @@
    },
    {
     "box": {
-     "id": "obj-342",
+     "id": "obj-350",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      4086,
+      4146,
       98,
       22
      ],
@@ -7225,7 +7394,7 @@
    },
    {
     "box": {
-     "id": "obj-343",
+     "id": "obj-351",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7263,7 +7432,7 @@
    },
    {
     "box": {
-     "id": "obj-344",
+     "id": "obj-352",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7277,175 +7446,6 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      794,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-345",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4116,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-346",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4116,
-      175,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/bow/tremolo"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-347",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      316.0,
-      4116,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-348",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4146,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-349",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4146,
-      189,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/tremolo"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-350",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      365.0,
-      4146,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-351",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      800,
-      744,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      744,
-      104,
-      48
-     ],
-     "varname": "/bow/tremolo_depth",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/bow/tremolo_depth",
-       "parameter_shortname": "tremolo depth",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-352",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      800,
-      794,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      800,
       794,
       104,
       22
@@ -7481,14 +7481,14 @@
      "patching_rect": [
       117.0,
       4176,
-      217,
+      175,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/bow/tremolo_depth"
+     "text": "route /yehu/bow/tremolo"
     }
    },
    {
@@ -7498,7 +7498,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      316.0,
       4176,
       91,
       22
@@ -7536,13 +7536,13 @@
      "patching_rect": [
       152.0,
       4206,
-      231,
+      189,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/bow/tremolo_depth"
+     "text": "prepend /yehu/bow/tremolo"
     }
    },
    {
@@ -7552,7 +7552,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      365.0,
       4206,
       98,
       22
@@ -7564,6 +7564,175 @@
    {
     "box": {
      "id": "obj-359",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      800,
+      744,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      744,
+      104,
+      48
+     ],
+     "varname": "/bow/tremolo_depth",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/tremolo_depth",
+       "parameter_shortname": "tremolo depth",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-360",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      800,
+      794,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-361",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4236,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-362",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4236,
+      217,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/tremolo_depth"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-363",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      358.0,
+      4236,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-364",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4266,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-365",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4266,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/tremolo_depth"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-366",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      4266,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-367",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7601,7 +7770,7 @@
    },
    {
     "box": {
-     "id": "obj-360",
+     "id": "obj-368",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7625,13 +7794,13 @@
    },
    {
     "box": {
-     "id": "obj-361",
+     "id": "obj-369",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4236,
+      4296,
       77,
       22
      ],
@@ -7643,13 +7812,13 @@
    },
    {
     "box": {
-     "id": "obj-362",
+     "id": "obj-370",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4236,
+      4296,
       161,
       22
      ],
@@ -7662,13 +7831,13 @@
    },
    {
     "box": {
-     "id": "obj-363",
+     "id": "obj-371",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      4236,
+      4296,
       91,
       22
      ],
@@ -7680,13 +7849,13 @@
    },
    {
     "box": {
-     "id": "obj-364",
+     "id": "obj-372",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4266,
+      4326,
       140,
       22
      ],
@@ -7698,13 +7867,13 @@
    },
    {
     "box": {
-     "id": "obj-365",
+     "id": "obj-373",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       180.0,
-      4266,
+      4326,
       175,
       22
      ],
@@ -7716,13 +7885,13 @@
    },
    {
     "box": {
-     "id": "obj-366",
+     "id": "obj-374",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      4266,
+      4326,
       98,
       22
      ],
@@ -7732,7 +7901,7 @@
    },
    {
     "box": {
-     "id": "obj-367",
+     "id": "obj-375",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7755,7 +7924,7 @@
    },
    {
     "box": {
-     "id": "obj-368",
+     "id": "obj-376",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7793,7 +7962,7 @@
    },
    {
     "box": {
-     "id": "obj-369",
+     "id": "obj-377",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7817,13 +7986,13 @@
    },
    {
     "box": {
-     "id": "obj-370",
+     "id": "obj-378",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4296,
+      4356,
       77,
       22
      ],
@@ -7835,13 +8004,13 @@
    },
    {
     "box": {
-     "id": "obj-371",
+     "id": "obj-379",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4296,
+      4356,
       217,
       22
      ],
@@ -7854,13 +8023,13 @@
    },
    {
     "box": {
-     "id": "obj-372",
+     "id": "obj-380",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4296,
+      4356,
       91,
       22
      ],
@@ -7872,13 +8041,13 @@
    },
    {
     "box": {
-     "id": "obj-373",
+     "id": "obj-381",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4326,
+      4386,
       133,
       22
      ],
@@ -7890,13 +8059,13 @@
    },
    {
     "box": {
-     "id": "obj-374",
+     "id": "obj-382",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4326,
+      4386,
       231,
       22
      ],
@@ -7908,13 +8077,13 @@
    },
    {
     "box": {
-     "id": "obj-375",
+     "id": "obj-383",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4326,
+      4386,
       98,
       22
      ],
@@ -7924,7 +8093,7 @@
    },
    {
     "box": {
-     "id": "obj-376",
+     "id": "obj-384",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7962,7 +8131,7 @@
    },
    {
     "box": {
-     "id": "obj-377",
+     "id": "obj-385",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7986,13 +8155,13 @@
    },
    {
     "box": {
-     "id": "obj-378",
+     "id": "obj-386",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4356,
+      4416,
       77,
       22
      ],
@@ -8004,13 +8173,13 @@
    },
    {
     "box": {
-     "id": "obj-379",
+     "id": "obj-387",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4356,
+      4416,
       196,
       22
      ],
@@ -8023,13 +8192,13 @@
    },
    {
     "box": {
-     "id": "obj-380",
+     "id": "obj-388",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4356,
+      4416,
       91,
       22
      ],
@@ -8041,13 +8210,13 @@
    },
    {
     "box": {
-     "id": "obj-381",
+     "id": "obj-389",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4386,
+      4446,
       112,
       22
      ],
@@ -8059,13 +8228,13 @@
    },
    {
     "box": {
-     "id": "obj-382",
+     "id": "obj-390",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4386,
+      4446,
       210,
       22
      ],
@@ -8077,13 +8246,13 @@
    },
    {
     "box": {
-     "id": "obj-383",
+     "id": "obj-391",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4386,
+      4446,
       98,
       22
      ],
@@ -8093,7 +8262,7 @@
    },
    {
     "box": {
-     "id": "obj-384",
+     "id": "obj-392",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8131,7 +8300,7 @@
    },
    {
     "box": {
-     "id": "obj-385",
+     "id": "obj-393",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8155,13 +8324,13 @@
    },
    {
     "box": {
-     "id": "obj-386",
+     "id": "obj-394",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4416,
+      4476,
       77,
       22
      ],
@@ -8173,13 +8342,13 @@
    },
    {
     "box": {
-     "id": "obj-387",
+     "id": "obj-395",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4416,
+      4476,
       217,
       22
      ],
@@ -8192,13 +8361,13 @@
    },
    {
     "box": {
-     "id": "obj-388",
+     "id": "obj-396",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4416,
+      4476,
       91,
       22
      ],
@@ -8210,13 +8379,13 @@
    },
    {
     "box": {
-     "id": "obj-389",
+     "id": "obj-397",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4446,
+      4506,
       133,
       22
      ],
@@ -8228,13 +8397,13 @@
    },
    {
     "box": {
-     "id": "obj-390",
+     "id": "obj-398",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4446,
+      4506,
       231,
       22
      ],
@@ -8246,13 +8415,13 @@
    },
    {
     "box": {
-     "id": "obj-391",
+     "id": "obj-399",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4446,
+      4506,
       98,
       22
      ],
@@ -8262,7 +8431,7 @@
    },
    {
     "box": {
-     "id": "obj-392",
+     "id": "obj-400",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8300,7 +8469,7 @@
    },
    {
     "box": {
-     "id": "obj-393",
+     "id": "obj-401",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8324,13 +8493,13 @@
    },
    {
     "box": {
-     "id": "obj-394",
+     "id": "obj-402",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4476,
+      4536,
       77,
       22
      ],
@@ -8342,13 +8511,13 @@
    },
    {
     "box": {
-     "id": "obj-395",
+     "id": "obj-403",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4476,
+      4536,
       196,
       22
      ],
@@ -8361,13 +8530,13 @@
    },
    {
     "box": {
-     "id": "obj-396",
+     "id": "obj-404",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4476,
+      4536,
       91,
       22
      ],
@@ -8379,13 +8548,13 @@
    },
    {
     "box": {
-     "id": "obj-397",
+     "id": "obj-405",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4506,
+      4566,
       112,
       22
      ],
@@ -8397,13 +8566,13 @@
    },
    {
     "box": {
-     "id": "obj-398",
+     "id": "obj-406",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4506,
+      4566,
       210,
       22
      ],
@@ -8415,13 +8584,13 @@
    },
    {
     "box": {
-     "id": "obj-399",
+     "id": "obj-407",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4506,
+      4566,
       98,
       22
      ],
@@ -8431,7 +8600,7 @@
    },
    {
     "box": {
-     "id": "obj-400",
+     "id": "obj-408",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8469,7 +8638,7 @@
    },
    {
     "box": {
-     "id": "obj-401",
+     "id": "obj-409",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8493,13 +8662,13 @@
    },
    {
     "box": {
-     "id": "obj-402",
+     "id": "obj-410",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4536,
+      4596,
       77,
       22
      ],
@@ -8511,13 +8680,13 @@
    },
    {
     "box": {
-     "id": "obj-403",
+     "id": "obj-411",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4536,
+      4596,
       217,
       22
      ],
@@ -8530,13 +8699,13 @@
    },
    {
     "box": {
-     "id": "obj-404",
+     "id": "obj-412",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4536,
+      4596,
       91,
       22
      ],
@@ -8548,13 +8717,13 @@
    },
    {
     "box": {
-     "id": "obj-405",
+     "id": "obj-413",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4566,
+      4626,
       133,
       22
      ],
@@ -8566,13 +8735,13 @@
    },
    {
     "box": {
-     "id": "obj-406",
+     "id": "obj-414",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4566,
+      4626,
       231,
       22
      ],
@@ -8584,13 +8753,13 @@
    },
    {
     "box": {
-     "id": "obj-407",
+     "id": "obj-415",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4566,
+      4626,
       98,
       22
      ],
@@ -8600,7 +8769,7 @@
    },
    {
     "box": {
-     "id": "obj-408",
+     "id": "obj-416",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8638,7 +8807,7 @@
    },
    {
     "box": {
-     "id": "obj-409",
+     "id": "obj-417",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8662,13 +8831,13 @@
    },
    {
     "box": {
-     "id": "obj-410",
+     "id": "obj-418",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4596,
+      4656,
       77,
       22
      ],
@@ -8680,13 +8849,13 @@
    },
    {
     "box": {
-     "id": "obj-411",
+     "id": "obj-419",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4596,
+      4656,
       196,
       22
      ],
@@ -8699,13 +8868,13 @@
    },
    {
     "box": {
-     "id": "obj-412",
+     "id": "obj-420",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4596,
+      4656,
       91,
       22
      ],
@@ -8717,13 +8886,13 @@
    },
    {
     "box": {
-     "id": "obj-413",
+     "id": "obj-421",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4626,
+      4686,
       112,
       22
      ],
@@ -8735,13 +8904,13 @@
    },
    {
     "box": {
-     "id": "obj-414",
+     "id": "obj-422",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4626,
+      4686,
       210,
       22
      ],
@@ -8753,13 +8922,13 @@
    },
    {
     "box": {
-     "id": "obj-415",
+     "id": "obj-423",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4626,
+      4686,
       98,
       22
      ],
@@ -8769,7 +8938,7 @@
    },
    {
     "box": {
-     "id": "obj-416",
+     "id": "obj-424",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8807,7 +8976,7 @@
    },
    {
     "box": {
-     "id": "obj-417",
+     "id": "obj-425",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8831,13 +9000,13 @@
    },
    {
     "box": {
-     "id": "obj-418",
+     "id": "obj-426",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4656,
+      4716,
       77,
       22
      ],
@@ -8849,13 +9018,13 @@
    },
    {
     "box": {
-     "id": "obj-419",
+     "id": "obj-427",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4656,
+      4716,
       217,
       22
      ],
@@ -8868,13 +9037,13 @@
    },
    {
     "box": {
-     "id": "obj-420",
+     "id": "obj-428",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4656,
+      4716,
       91,
       22
      ],
@@ -8886,13 +9055,13 @@
    },
    {
     "box": {
-     "id": "obj-421",
+     "id": "obj-429",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4686,
+      4746,
       133,
       22
      ],
@@ -8904,13 +9073,13 @@
    },
    {
     "box": {
-     "id": "obj-422",
+     "id": "obj-430",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4686,
+      4746,
       231,
       22
      ],
@@ -8922,13 +9091,13 @@
    },
    {
     "box": {
-     "id": "obj-423",
+     "id": "obj-431",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4686,
+      4746,
       98,
       22
      ],
@@ -8938,7 +9107,7 @@
    },
    {
     "box": {
-     "id": "obj-424",
+     "id": "obj-432",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8976,7 +9145,7 @@
    },
    {
     "box": {
-     "id": "obj-425",
+     "id": "obj-433",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9000,13 +9169,13 @@
    },
    {
     "box": {
-     "id": "obj-426",
+     "id": "obj-434",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4716,
+      4776,
       77,
       22
      ],
@@ -9018,13 +9187,13 @@
    },
    {
     "box": {
-     "id": "obj-427",
+     "id": "obj-435",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4716,
+      4776,
       196,
       22
      ],
@@ -9037,13 +9206,13 @@
    },
    {
     "box": {
-     "id": "obj-428",
+     "id": "obj-436",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4716,
+      4776,
       91,
       22
      ],
@@ -9055,13 +9224,13 @@
    },
    {
     "box": {
-     "id": "obj-429",
+     "id": "obj-437",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4746,
+      4806,
       112,
       22
      ],
@@ -9073,13 +9242,13 @@
    },
    {
     "box": {
-     "id": "obj-430",
+     "id": "obj-438",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4746,
+      4806,
       210,
       22
      ],
@@ -9091,13 +9260,13 @@
    },
    {
     "box": {
-     "id": "obj-431",
+     "id": "obj-439",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4746,
+      4806,
       98,
       22
      ],
@@ -9107,7 +9276,7 @@
    },
    {
     "box": {
-     "id": "obj-432",
+     "id": "obj-440",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9130,7 +9299,7 @@
    },
    {
     "box": {
-     "id": "obj-433",
+     "id": "obj-441",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9168,7 +9337,7 @@
    },
    {
     "box": {
-     "id": "obj-434",
+     "id": "obj-442",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9182,175 +9351,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      990,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-435",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4776,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-436",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4776,
-      189,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/vibrato/depth"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-437",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      330.0,
-      4776,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-438",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4806,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-439",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4806,
-      203,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/depth"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-440",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      379.0,
-      4806,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-441",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      940,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      940,
-      104,
-      48
-     ],
-     "varname": "/vibrato/press",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/vibrato/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-442",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      990,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       990,
       104,
       22
@@ -9393,7 +9393,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/vibrato/press"
+     "text": "route /yehu/vibrato/depth"
     }
    },
    {
@@ -9447,7 +9447,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/vibrato/press"
+     "text": "prepend /yehu/vibrato/depth"
     }
    },
    {
@@ -9473,7 +9473,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      240,
+      128,
       940,
       104,
       48
@@ -9484,18 +9484,18 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      240,
+      128,
       940,
       104,
       48
      ],
-     "varname": "/vibrato/upward",
+     "varname": "/vibrato/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/vibrato/upward",
-       "parameter_shortname": "upward",
-       "parameter_mmin": -1.0,
+       "parameter_longname": "/vibrato/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -9511,15 +9511,15 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      240,
+      128,
       990,
       104,
       22
      ],
-     "text": "-1 to 1",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      240,
+      128,
       990,
       104,
       22
@@ -9555,14 +9555,14 @@
      "patching_rect": [
       117.0,
       4896,
-      196,
+      189,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/vibrato/upward"
+     "text": "route /yehu/vibrato/press"
     }
    },
    {
@@ -9572,7 +9572,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      330.0,
       4896,
       91,
       22
@@ -9610,13 +9610,13 @@
      "patching_rect": [
       152.0,
       4926,
-      210,
+      203,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/vibrato/upward"
+     "text": "prepend /yehu/vibrato/press"
     }
    },
    {
@@ -9626,7 +9626,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      379.0,
       4926,
       98,
       22
@@ -9638,6 +9638,175 @@
    {
     "box": {
      "id": "obj-457",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      940,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      940,
+      104,
+      48
+     ],
+     "varname": "/vibrato/upward",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/vibrato/upward",
+       "parameter_shortname": "upward",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-458",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-459",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4956,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-460",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4956,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/vibrato/upward"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-461",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      4956,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-462",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4986,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-463",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4986,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/upward"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-464",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      4986,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-465",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9675,7 +9844,7 @@
    },
    {
     "box": {
-     "id": "obj-458",
+     "id": "obj-466",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9699,13 +9868,13 @@
    },
    {
     "box": {
-     "id": "obj-459",
+     "id": "obj-467",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4956,
+      5016,
       77,
       22
      ],
@@ -9717,13 +9886,13 @@
    },
    {
     "box": {
-     "id": "obj-460",
+     "id": "obj-468",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4956,
+      5016,
       182,
       22
      ],
@@ -9736,13 +9905,13 @@
    },
    {
     "box": {
-     "id": "obj-461",
+     "id": "obj-469",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      4956,
+      5016,
       91,
       22
      ],
@@ -9754,13 +9923,13 @@
    },
    {
     "box": {
-     "id": "obj-462",
+     "id": "obj-470",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4986,
+      5046,
       112,
       22
      ],
@@ -9772,13 +9941,13 @@
    },
    {
     "box": {
-     "id": "obj-463",
+     "id": "obj-471",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4986,
+      5046,
       196,
       22
      ],
@@ -9790,13 +9959,13 @@
    },
    {
     "box": {
-     "id": "obj-464",
+     "id": "obj-472",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      4986,
+      5046,
       98,
       22
      ],
@@ -9806,7 +9975,7 @@
    },
    {
     "box": {
-     "id": "obj-465",
+     "id": "obj-473",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9844,7 +10013,7 @@
    },
    {
     "box": {
-     "id": "obj-466",
+     "id": "obj-474",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9868,13 +10037,13 @@
    },
    {
     "box": {
-     "id": "obj-467",
+     "id": "obj-475",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5016,
+      5076,
       77,
       22
      ],
@@ -9886,13 +10055,13 @@
    },
    {
     "box": {
-     "id": "obj-468",
+     "id": "obj-476",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5016,
+      5076,
       189,
       22
      ],
@@ -9905,13 +10074,13 @@
    },
    {
     "box": {
-     "id": "obj-469",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      5016,
+      5076,
       91,
       22
      ],
@@ -9923,13 +10092,13 @@
    },
    {
     "box": {
-     "id": "obj-470",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5046,
+      5106,
       112,
       22
      ],
@@ -9941,13 +10110,13 @@
    },
    {
     "box": {
-     "id": "obj-471",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5046,
+      5106,
       203,
       22
      ],
@@ -9959,13 +10128,13 @@
    },
    {
     "box": {
-     "id": "obj-472",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      5046,
+      5106,
       98,
       22
      ],
@@ -9975,7 +10144,7 @@
    },
    {
     "box": {
-     "id": "obj-473",
+     "id": "obj-481",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9998,7 +10167,7 @@
    },
    {
     "box": {
-     "id": "obj-474",
+     "id": "obj-482",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10036,7 +10205,7 @@
    },
    {
     "box": {
-     "id": "obj-475",
+     "id": "obj-483",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10060,13 +10229,13 @@
    },
    {
     "box": {
-     "id": "obj-476",
+     "id": "obj-484",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5076,
+      5136,
       77,
       22
      ],
@@ -10078,13 +10247,13 @@
    },
    {
     "box": {
-     "id": "obj-477",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5076,
+      5136,
       175,
       22
      ],
@@ -10097,13 +10266,13 @@
    },
    {
     "box": {
-     "id": "obj-478",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      5076,
+      5136,
       91,
       22
      ],
@@ -10115,13 +10284,13 @@
    },
    {
     "box": {
-     "id": "obj-479",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5106,
+      5166,
       112,
       22
      ],
@@ -10133,13 +10302,13 @@
    },
    {
     "box": {
-     "id": "obj-480",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5106,
+      5166,
       189,
       22
      ],
@@ -10151,13 +10320,13 @@
    },
    {
     "box": {
-     "id": "obj-481",
+     "id": "obj-489",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      5106,
+      5166,
       98,
       22
      ],
@@ -10167,7 +10336,7 @@
    },
    {
     "box": {
-     "id": "obj-482",
+     "id": "obj-490",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10205,7 +10374,7 @@
    },
    {
     "box": {
-     "id": "obj-483",
+     "id": "obj-491",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10229,13 +10398,13 @@
    },
    {
     "box": {
-     "id": "obj-484",
+     "id": "obj-492",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5136,
+      5196,
       77,
       22
      ],
@@ -10247,13 +10416,13 @@
    },
    {
     "box": {
-     "id": "obj-485",
+     "id": "obj-493",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5136,
+      5196,
       196,
       22
      ],
@@ -10266,13 +10435,13 @@
    },
    {
     "box": {
-     "id": "obj-486",
+     "id": "obj-494",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      5136,
+      5196,
       91,
       22
      ],
@@ -10284,13 +10453,13 @@
    },
    {
     "box": {
-     "id": "obj-487",
+     "id": "obj-495",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5166,
+      5226,
       126,
       22
      ],
@@ -10302,13 +10471,13 @@
    },
    {
     "box": {
-     "id": "obj-488",
+     "id": "obj-496",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      5166,
+      5226,
       210,
       22
      ],
@@ -10320,13 +10489,13 @@
    },
    {
     "box": {
-     "id": "obj-489",
+     "id": "obj-497",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       400.0,
-      5166,
+      5226,
       98,
       22
      ],
@@ -10336,7 +10505,7 @@
    },
    {
     "box": {
-     "id": "obj-490",
+     "id": "obj-498",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10359,7 +10528,7 @@
    },
    {
     "box": {
-     "id": "obj-491",
+     "id": "obj-499",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10397,7 +10566,7 @@
    },
    {
     "box": {
-     "id": "obj-492",
+     "id": "obj-500",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10421,13 +10590,13 @@
    },
    {
     "box": {
-     "id": "obj-493",
+     "id": "obj-501",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5196,
+      5256,
       77,
       22
      ],
@@ -10439,13 +10608,13 @@
    },
    {
     "box": {
-     "id": "obj-494",
+     "id": "obj-502",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5196,
+      5256,
       231,
       22
      ],
@@ -10458,13 +10627,13 @@
    },
    {
     "box": {
-     "id": "obj-495",
+     "id": "obj-503",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       372.0,
-      5196,
+      5256,
       91,
       22
      ],
@@ -10476,13 +10645,13 @@
    },
    {
     "box": {
-     "id": "obj-496",
+     "id": "obj-504",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5226,
+      5286,
       112,
       22
      ],
@@ -10494,13 +10663,13 @@
    },
    {
     "box": {
-     "id": "obj-497",
+     "id": "obj-505",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5226,
+      5286,
       245,
       22
      ],
@@ -10512,13 +10681,13 @@
    },
    {
     "box": {
-     "id": "obj-498",
+     "id": "obj-506",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      5226,
+      5286,
       98,
       22
      ],
@@ -10528,7 +10697,7 @@
    },
    {
     "box": {
-     "id": "obj-499",
+     "id": "obj-507",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10566,7 +10735,7 @@
    },
    {
     "box": {
-     "id": "obj-500",
+     "id": "obj-508",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10590,13 +10759,13 @@
    },
    {
     "box": {
-     "id": "obj-501",
+     "id": "obj-509",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5256,
+      5316,
       77,
       22
      ],
@@ -10608,13 +10777,13 @@
    },
    {
     "box": {
-     "id": "obj-502",
+     "id": "obj-510",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5256,
+      5316,
       217,
       22
      ],
@@ -10627,13 +10796,13 @@
    },
    {
     "box": {
-     "id": "obj-503",
+     "id": "obj-511",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      5256,
+      5316,
       91,
       22
      ],
@@ -10645,13 +10814,13 @@
    },
    {
     "box": {
-     "id": "obj-504",
+     "id": "obj-512",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5286,
+      5346,
       112,
       22
      ],
@@ -10663,13 +10832,13 @@
    },
    {
     "box": {
-     "id": "obj-505",
+     "id": "obj-513",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5286,
+      5346,
       231,
       22
      ],
@@ -10681,13 +10850,13 @@
    },
    {
     "box": {
-     "id": "obj-506",
+     "id": "obj-514",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      5286,
+      5346,
       98,
       22
      ],
@@ -10697,7 +10866,7 @@
    },
    {
     "box": {
-     "id": "obj-507",
+     "id": "obj-515",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10735,7 +10904,7 @@
    },
    {
     "box": {
-     "id": "obj-508",
+     "id": "obj-516",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10759,13 +10928,13 @@
    },
    {
     "box": {
-     "id": "obj-509",
+     "id": "obj-517",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5316,
+      5376,
       77,
       22
      ],
@@ -10777,13 +10946,13 @@
    },
    {
     "box": {
-     "id": "obj-510",
+     "id": "obj-518",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5316,
+      5376,
       231,
       22
      ],
@@ -10796,13 +10965,13 @@
    },
    {
     "box": {
-     "id": "obj-511",
+     "id": "obj-519",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       372.0,
-      5316,
+      5376,
       91,
       22
      ],
@@ -10814,13 +10983,13 @@
    },
    {
     "box": {
-     "id": "obj-512",
+     "id": "obj-520",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5346,
+      5406,
       112,
       22
      ],
@@ -10832,13 +11001,13 @@
    },
    {
     "box": {
-     "id": "obj-513",
+     "id": "obj-521",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5346,
+      5406,
       245,
       22
      ],
@@ -10850,13 +11019,13 @@
    },
    {
     "box": {
-     "id": "obj-514",
+     "id": "obj-522",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      5346,
+      5406,
       98,
       22
      ],
@@ -10866,7 +11035,7 @@
    },
    {
     "box": {
-     "id": "obj-515",
+     "id": "obj-523",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10904,7 +11073,7 @@
    },
    {
     "box": {
-     "id": "obj-516",
+     "id": "obj-524",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10928,13 +11097,13 @@
    },
    {
     "box": {
-     "id": "obj-517",
+     "id": "obj-525",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5376,
+      5436,
       77,
       22
      ],
@@ -10946,13 +11115,13 @@
    },
    {
     "box": {
-     "id": "obj-518",
+     "id": "obj-526",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5376,
+      5436,
       217,
       22
      ],
@@ -10965,13 +11134,13 @@
    },
    {
     "box": {
-     "id": "obj-519",
+     "id": "obj-527",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      5376,
+      5436,
       91,
       22
      ],
@@ -10983,13 +11152,13 @@
    },
    {
     "box": {
-     "id": "obj-520",
+     "id": "obj-528",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5406,
+      5466,
       112,
       22
      ],
@@ -11001,13 +11170,13 @@
    },
    {
     "box": {
-     "id": "obj-521",
+     "id": "obj-529",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5406,
+      5466,
       231,
       22
      ],
@@ -11019,13 +11188,13 @@
    },
    {
     "box": {
-     "id": "obj-522",
+     "id": "obj-530",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      5406,
+      5466,
       98,
       22
      ],
@@ -11035,7 +11204,7 @@
    },
    {
     "box": {
-     "id": "obj-523",
+     "id": "obj-531",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11058,7 +11227,7 @@
    },
    {
     "box": {
-     "id": "obj-524",
+     "id": "obj-532",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11096,7 +11265,7 @@
    },
    {
     "box": {
-     "id": "obj-525",
+     "id": "obj-533",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11110,175 +11279,6 @@
      "presentation": 1,
      "presentation_rect": [
       464,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-526",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5436,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-527",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5436,
-      175,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/output/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-528",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      316.0,
-      5436,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-529",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5466,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-530",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5466,
-      189,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-531",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      365.0,
-      5466,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-532",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      576,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      576,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/output/level",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/output/level",
-       "parameter_shortname": "level",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-533",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      576,
-      1088,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      576,
       1088,
       104,
       22
@@ -11314,14 +11314,14 @@
      "patching_rect": [
       117.0,
       5496,
-      182,
+      175,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/output/level"
+     "text": "route /yehu/output/gain"
     }
    },
    {
@@ -11331,7 +11331,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      323.0,
+      316.0,
       5496,
       91,
       22
@@ -11357,7 +11357,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -11369,13 +11369,13 @@
      "patching_rect": [
       152.0,
       5526,
-      196,
+      189,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/output/level"
+     "text": "prepend /yehu/output/gain"
     }
    },
    {
@@ -11385,7 +11385,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      372.0,
+      365.0,
       5526,
       98,
       22
@@ -11397,6 +11397,175 @@
    {
     "box": {
      "id": "obj-540",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      576,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/output/level",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/output/level",
+       "parameter_shortname": "level",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 2.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-541",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      576,
+      1088,
+      104,
+      22
+     ],
+     "text": "0 to 2",
+     "presentation": 1,
+     "presentation_rect": [
+      576,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-542",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5556,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-543",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5556,
+      182,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/output/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-544",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      323.0,
+      5556,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-545",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5586,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 1"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-546",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5586,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/level"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-547",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      5586,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-548",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11434,7 +11603,7 @@
    },
    {
     "box": {
-     "id": "obj-541",
+     "id": "obj-549",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11448,175 +11617,6 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-542",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5556,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-543",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5556,
-      196,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/output/balance"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-544",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      337.0,
-      5556,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-545",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5586,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-546",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5586,
-      210,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/balance"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-547",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      386.0,
-      5586,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-548",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      800,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/output/limiter",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/output/limiter",
-       "parameter_shortname": "limiter",
-       "parameter_mmin": -24.0,
-       "parameter_mmax": 0.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f dB"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-549",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      800,
-      1088,
-      104,
-      22
-     ],
-     "text": "-24 to 0 dB",
-     "presentation": 1,
-     "presentation_rect": [
-      800,
       1088,
       104,
       22
@@ -11659,7 +11659,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/output/limiter"
+     "text": "route /yehu/output/balance"
     }
    },
    {
@@ -11689,13 +11689,13 @@
      "patching_rect": [
       16.0,
       5646,
-      119,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set -3"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -11705,7 +11705,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      159.0,
+      152.0,
       5646,
       210,
       22
@@ -11713,7 +11713,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/output/limiter"
+     "text": "prepend /yehu/output/balance"
     }
    },
    {
@@ -11723,7 +11723,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      386.0,
       5646,
       98,
       22
@@ -11735,6 +11735,175 @@
    {
     "box": {
      "id": "obj-556",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      800,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/output/limiter",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/output/limiter",
+       "parameter_shortname": "limiter",
+       "parameter_mmin": -24.0,
+       "parameter_mmax": 0.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f dB"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-557",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      800,
+      1088,
+      104,
+      22
+     ],
+     "text": "-24 to 0 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-558",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5676,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-559",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5676,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/output/limiter"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-560",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      5676,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-561",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5706,
+      119,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set -3"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-562",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      159.0,
+      5706,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/limiter"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-563",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      5706,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-564",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11757,7 +11926,7 @@
    },
    {
     "box": {
-     "id": "obj-557",
+     "id": "obj-565",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11795,7 +11964,7 @@
    },
    {
     "box": {
-     "id": "obj-558",
+     "id": "obj-566",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11809,175 +11978,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      1186,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-559",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5676,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-560",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5676,
-      161,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/body/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-561",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      302.0,
-      5676,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-562",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5706,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-563",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5706,
-      175,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-564",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      351.0,
-      5706,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-565",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      1136,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      1136,
-      104,
-      48
-     ],
-     "varname": "/body/blend",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/body/blend",
-       "parameter_shortname": "blend",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-566",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      1186,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       1186,
       104,
       22
@@ -12013,14 +12013,14 @@
      "patching_rect": [
       117.0,
       5736,
-      168,
+      161,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/blend"
+     "text": "route /yehu/body/gain"
     }
    },
    {
@@ -12030,7 +12030,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      309.0,
+      302.0,
       5736,
       91,
       22
@@ -12068,13 +12068,13 @@
      "patching_rect": [
       152.0,
       5766,
-      182,
+      175,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/blend"
+     "text": "prepend /yehu/body/gain"
     }
    },
    {
@@ -12084,7 +12084,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      358.0,
+      351.0,
       5766,
       98,
       22
@@ -12100,7 +12100,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      240,
+      128,
       1136,
       104,
       48
@@ -12111,17 +12111,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      240,
+      128,
       1136,
       104,
       48
      ],
-     "varname": "/body/width",
+     "varname": "/body/blend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/body/width",
-       "parameter_shortname": "width",
+       "parameter_longname": "/body/blend",
+       "parameter_shortname": "blend",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -12138,7 +12138,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      240,
+      128,
       1186,
       104,
       22
@@ -12146,7 +12146,7 @@
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      240,
+      128,
       1186,
       104,
       22
@@ -12189,7 +12189,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/body/width"
+     "text": "route /yehu/body/blend"
     }
    },
    {
@@ -12219,13 +12219,13 @@
      "patching_rect": [
       16.0,
       5826,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.3"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -12235,7 +12235,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       5826,
       182,
       22
@@ -12243,7 +12243,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/width"
+     "text": "prepend /yehu/body/blend"
     }
    },
    {
@@ -12253,7 +12253,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      372.0,
+      358.0,
       5826,
       98,
       22
@@ -12265,6 +12265,175 @@
    {
     "box": {
      "id": "obj-581",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      1136,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1136,
+      104,
+      48
+     ],
+     "varname": "/body/width",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/width",
+       "parameter_shortname": "width",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-582",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      1186,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1186,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-583",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5856,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-584",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5856,
+      168,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-585",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      309.0,
+      5856,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-586",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5886,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.3"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-587",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      5886,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-588",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      5886,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-589",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12302,7 +12471,7 @@
    },
    {
     "box": {
-     "id": "obj-582",
+     "id": "obj-590",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12326,13 +12495,13 @@
    },
    {
     "box": {
-     "id": "obj-583",
+     "id": "obj-591",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5856,
+      5916,
       77,
       22
      ],
@@ -12344,13 +12513,13 @@
    },
    {
     "box": {
-     "id": "obj-584",
+     "id": "obj-592",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5856,
+      5916,
       203,
       22
      ],
@@ -12363,13 +12532,13 @@
    },
    {
     "box": {
-     "id": "obj-585",
+     "id": "obj-593",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       344.0,
-      5856,
+      5916,
       91,
       22
      ],
@@ -12381,13 +12550,13 @@
    },
    {
     "box": {
-     "id": "obj-586",
+     "id": "obj-594",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5886,
+      5946,
       112,
       22
      ],
@@ -12399,13 +12568,13 @@
    },
    {
     "box": {
-     "id": "obj-587",
+     "id": "obj-595",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5886,
+      5946,
       217,
       22
      ],
@@ -12417,13 +12586,13 @@
    },
    {
     "box": {
-     "id": "obj-588",
+     "id": "obj-596",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      5886,
+      5946,
       98,
       22
      ],
@@ -12433,7 +12602,7 @@
    },
    {
     "box": {
-     "id": "obj-589",
+     "id": "obj-597",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12471,7 +12640,7 @@
    },
    {
     "box": {
-     "id": "obj-590",
+     "id": "obj-598",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12495,13 +12664,13 @@
    },
    {
     "box": {
-     "id": "obj-591",
+     "id": "obj-599",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5916,
+      5976,
       77,
       22
      ],
@@ -12513,13 +12682,13 @@
    },
    {
     "box": {
-     "id": "obj-592",
+     "id": "obj-600",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5916,
+      5976,
       273,
       22
      ],
@@ -12532,13 +12701,13 @@
    },
    {
     "box": {
-     "id": "obj-593",
+     "id": "obj-601",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       414.0,
-      5916,
+      5976,
       91,
       22
      ],
@@ -12550,13 +12719,13 @@
    },
    {
     "box": {
-     "id": "obj-594",
+     "id": "obj-602",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5946,
+      6006,
       133,
       22
      ],
@@ -12568,13 +12737,13 @@
    },
    {
     "box": {
-     "id": "obj-595",
+     "id": "obj-603",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      5946,
+      6006,
       287,
       22
      ],
@@ -12586,13 +12755,13 @@
    },
    {
     "box": {
-     "id": "obj-596",
+     "id": "obj-604",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       484.0,
-      5946,
+      6006,
       98,
       22
      ],
@@ -12602,7 +12771,7 @@
    },
    {
     "box": {
-     "id": "obj-597",
+     "id": "obj-605",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12640,7 +12809,7 @@
    },
    {
     "box": {
-     "id": "obj-598",
+     "id": "obj-606",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12664,13 +12833,13 @@
    },
    {
     "box": {
-     "id": "obj-599",
+     "id": "obj-607",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5976,
+      6036,
       77,
       22
      ],
@@ -12682,13 +12851,13 @@
    },
    {
     "box": {
-     "id": "obj-600",
+     "id": "obj-608",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5976,
+      6036,
       189,
       22
      ],
@@ -12701,13 +12870,13 @@
    },
    {
     "box": {
-     "id": "obj-601",
+     "id": "obj-609",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      5976,
+      6036,
       91,
       22
      ],
@@ -12719,13 +12888,13 @@
    },
    {
     "box": {
-     "id": "obj-602",
+     "id": "obj-610",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6006,
+      6066,
       126,
       22
      ],
@@ -12737,13 +12906,13 @@
    },
    {
     "box": {
-     "id": "obj-603",
+     "id": "obj-611",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      6006,
+      6066,
       203,
       22
      ],
@@ -12755,13 +12924,13 @@
    },
    {
     "box": {
-     "id": "obj-604",
+     "id": "obj-612",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      6006,
+      6066,
       98,
       22
      ],
@@ -12771,7 +12940,7 @@
    },
    {
     "box": {
-     "id": "obj-605",
+     "id": "obj-613",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12794,7 +12963,7 @@
    },
    {
     "box": {
-     "id": "obj-606",
+     "id": "obj-614",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12832,7 +13001,7 @@
    },
    {
     "box": {
-     "id": "obj-607",
+     "id": "obj-615",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12856,13 +13025,13 @@
    },
    {
     "box": {
-     "id": "obj-608",
+     "id": "obj-616",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6036,
+      6096,
       77,
       22
      ],
@@ -12874,13 +13043,13 @@
    },
    {
     "box": {
-     "id": "obj-609",
+     "id": "obj-617",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6036,
+      6096,
       161,
       22
      ],
@@ -12893,13 +13062,13 @@
    },
    {
     "box": {
-     "id": "obj-610",
+     "id": "obj-618",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      6036,
+      6096,
       91,
       22
      ],
@@ -12911,13 +13080,13 @@
    },
    {
     "box": {
-     "id": "obj-611",
+     "id": "obj-619",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6066,
+      6126,
       112,
       22
      ],
@@ -12929,13 +13098,13 @@
    },
    {
     "box": {
-     "id": "obj-612",
+     "id": "obj-620",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6066,
+      6126,
       175,
       22
      ],
@@ -12947,13 +13116,13 @@
    },
    {
     "box": {
-     "id": "obj-613",
+     "id": "obj-621",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      6066,
+      6126,
       98,
       22
      ],
@@ -12963,7 +13132,7 @@
    },
    {
     "box": {
-     "id": "obj-614",
+     "id": "obj-622",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13001,7 +13170,7 @@
    },
    {
     "box": {
-     "id": "obj-615",
+     "id": "obj-623",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13015,175 +13184,6 @@
      "presentation": 1,
      "presentation_rect": [
       128,
-      1284,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-616",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      6096,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-617",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      6096,
-      168,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/room/decay"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-618",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      309.0,
-      6096,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-619",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      6126,
-      126,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0.4"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-620",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      166.0,
-      6126,
-      182,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/room/decay"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-621",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      372.0,
-      6126,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-622",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      240,
-      1234,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      240,
-      1234,
-      104,
-      48
-     ],
-     "varname": "/room/damping",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/room/damping",
-       "parameter_shortname": "damping",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-623",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      240,
-      1284,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      240,
       1284,
       104,
       22
@@ -13219,14 +13219,14 @@
      "patching_rect": [
       117.0,
       6156,
-      182,
+      168,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/room/damping"
+     "text": "route /yehu/room/decay"
     }
    },
    {
@@ -13236,7 +13236,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      323.0,
+      309.0,
       6156,
       91,
       22
@@ -13274,13 +13274,13 @@
      "patching_rect": [
       166.0,
       6186,
-      196,
+      182,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/room/damping"
+     "text": "prepend /yehu/room/decay"
     }
    },
    {
@@ -13290,7 +13290,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      372.0,
       6186,
       98,
       22
@@ -13302,6 +13302,175 @@
    {
     "box": {
      "id": "obj-630",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      1234,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1234,
+      104,
+      48
+     ],
+     "varname": "/room/damping",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/room/damping",
+       "parameter_shortname": "damping",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-631",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      1284,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1284,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-632",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6216,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-633",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      6216,
+      182,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-634",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      323.0,
+      6216,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-635",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6246,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.4"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-636",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      6246,
+      196,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/room/damping"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-637",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      6246,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-638",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13339,7 +13508,7 @@
    },
    {
     "box": {
-     "id": "obj-631",
+     "id": "obj-639",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13363,13 +13532,13 @@
    },
    {
     "box": {
-     "id": "obj-632",
+     "id": "obj-640",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6216,
+      6276,
       77,
       22
      ],
@@ -13381,13 +13550,13 @@
    },
    {
     "box": {
-     "id": "obj-633",
+     "id": "obj-641",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6216,
+      6276,
       168,
       22
      ],
@@ -13400,13 +13569,13 @@
    },
    {
     "box": {
-     "id": "obj-634",
+     "id": "obj-642",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      6216,
+      6276,
       91,
       22
      ],
@@ -13418,13 +13587,13 @@
    },
    {
     "box": {
-     "id": "obj-635",
+     "id": "obj-643",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6246,
+      6306,
       133,
       22
      ],
@@ -13436,13 +13605,13 @@
    },
    {
     "box": {
-     "id": "obj-636",
+     "id": "obj-644",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      6246,
+      6306,
       182,
       22
      ],
@@ -13454,13 +13623,13 @@
    },
    {
     "box": {
-     "id": "obj-637",
+     "id": "obj-645",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      6246,
+      6306,
       98,
       22
      ],
@@ -13470,7 +13639,7 @@
    },
    {
     "box": {
-     "id": "obj-638",
+     "id": "obj-646",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13508,7 +13677,7 @@
    },
    {
     "box": {
-     "id": "obj-639",
+     "id": "obj-647",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13532,13 +13701,13 @@
    },
    {
     "box": {
-     "id": "obj-640",
+     "id": "obj-648",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6276,
+      6336,
       77,
       22
      ],
@@ -13550,13 +13719,13 @@
    },
    {
     "box": {
-     "id": "obj-641",
+     "id": "obj-649",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6276,
+      6336,
       189,
       22
      ],
@@ -13569,13 +13738,13 @@
    },
    {
     "box": {
-     "id": "obj-642",
+     "id": "obj-650",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      6276,
+      6336,
       91,
       22
      ],
@@ -13587,13 +13756,13 @@
    },
    {
     "box": {
-     "id": "obj-643",
+     "id": "obj-651",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6306,
+      6366,
       112,
       22
      ],
@@ -13605,13 +13774,13 @@
    },
    {
     "box": {
-     "id": "obj-644",
+     "id": "obj-652",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6306,
+      6366,
       203,
       22
      ],
@@ -13623,13 +13792,13 @@
    },
    {
     "box": {
-     "id": "obj-645",
+     "id": "obj-653",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      6306,
+      6366,
       98,
       22
      ],
@@ -13639,7 +13808,7 @@
    },
    {
     "box": {
-     "id": "obj-646",
+     "id": "obj-654",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13677,7 +13846,7 @@
    },
    {
     "box": {
-     "id": "obj-647",
+     "id": "obj-655",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13701,13 +13870,13 @@
    },
    {
     "box": {
-     "id": "obj-648",
+     "id": "obj-656",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6336,
+      6396,
       77,
       22
      ],
@@ -13719,13 +13888,13 @@
    },
    {
     "box": {
-     "id": "obj-649",
+     "id": "obj-657",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6336,
+      6396,
       154,
       22
      ],
@@ -13738,13 +13907,13 @@
    },
    {
     "box": {
-     "id": "obj-650",
+     "id": "obj-658",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       295.0,
-      6336,
+      6396,
       91,
       22
      ],
@@ -13756,13 +13925,13 @@
    },
    {
     "box": {
-     "id": "obj-651",
+     "id": "obj-659",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6366,
+      6426,
       112,
       22
      ],
@@ -13774,13 +13943,13 @@
    },
    {
     "box": {
-     "id": "obj-652",
+     "id": "obj-660",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6366,
+      6426,
       168,
       22
      ],
@@ -13792,13 +13961,13 @@
    },
    {
     "box": {
-     "id": "obj-653",
+     "id": "obj-661",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       344.0,
-      6366,
+      6426,
       98,
       22
      ],
@@ -13808,7 +13977,7 @@
    },
    {
     "box": {
-     "id": "obj-654",
+     "id": "obj-662",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13831,7 +14000,7 @@
    },
    {
     "box": {
-     "id": "obj-655",
+     "id": "obj-663",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13869,7 +14038,7 @@
    },
    {
     "box": {
-     "id": "obj-656",
+     "id": "obj-664",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13893,13 +14062,13 @@
    },
    {
     "box": {
-     "id": "obj-657",
+     "id": "obj-665",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6396,
+      6456,
       77,
       22
      ],
@@ -13911,13 +14080,13 @@
    },
    {
     "box": {
-     "id": "obj-658",
+     "id": "obj-666",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6396,
+      6456,
       224,
       22
      ],
@@ -13930,13 +14099,13 @@
    },
    {
     "box": {
-     "id": "obj-659",
+     "id": "obj-667",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       365.0,
-      6396,
+      6456,
       91,
       22
      ],
@@ -13948,13 +14117,13 @@
    },
    {
     "box": {
-     "id": "obj-660",
+     "id": "obj-668",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6426,
+      6486,
       112,
       22
      ],
@@ -13966,13 +14135,13 @@
    },
    {
     "box": {
-     "id": "obj-661",
+     "id": "obj-669",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6426,
+      6486,
       238,
       22
      ],
@@ -13984,13 +14153,13 @@
    },
    {
     "box": {
-     "id": "obj-662",
+     "id": "obj-670",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      6426,
+      6486,
       98,
       22
      ],
@@ -14000,7 +14169,7 @@
    },
    {
     "box": {
-     "id": "obj-663",
+     "id": "obj-671",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -14038,7 +14207,7 @@
    },
    {
     "box": {
-     "id": "obj-664",
+     "id": "obj-672",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -14062,13 +14231,13 @@
    },
    {
     "box": {
-     "id": "obj-665",
+     "id": "obj-673",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6456,
+      6516,
       77,
       22
      ],
@@ -14080,13 +14249,13 @@
    },
    {
     "box": {
-     "id": "obj-666",
+     "id": "obj-674",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6456,
+      6516,
       175,
       22
      ],
@@ -14099,13 +14268,13 @@
    },
    {
     "box": {
-     "id": "obj-667",
+     "id": "obj-675",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      6456,
+      6516,
       91,
       22
      ],
@@ -14117,13 +14286,13 @@
    },
    {
     "box": {
-     "id": "obj-668",
+     "id": "obj-676",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6486,
+      6546,
       112,
       22
      ],
@@ -14135,13 +14304,13 @@
    },
    {
     "box": {
-     "id": "obj-669",
+     "id": "obj-677",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6486,
+      6546,
       189,
       22
      ],
@@ -14153,13 +14322,13 @@
    },
    {
     "box": {
-     "id": "obj-670",
+     "id": "obj-678",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      6486,
+      6546,
       98,
       22
      ],
@@ -17149,6 +17318,19 @@
    {
     "patchline": {
      "source": [
+      "obj-296",
+      0
+     ],
+     "destination": [
+      "obj-297",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-297",
       0
      ],
@@ -17166,7 +17348,7 @@
       0
      ],
      "destination": [
-      "obj-299",
+      "obj-294",
       0
      ],
      "order": 0
@@ -17179,7 +17361,20 @@
       0
      ],
      "destination": [
-      "obj-295",
+      "obj-294",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-294",
+      0
+     ],
+     "destination": [
+      "obj-300",
       0
      ],
      "order": 0
@@ -17192,33 +17387,7 @@
       0
      ],
      "destination": [
-      "obj-295",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-295",
-      0
-     ],
-     "destination": [
       "obj-301",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-301",
-      0
-     ],
-     "destination": [
-      "obj-302",
       0
      ],
      "order": 0
@@ -17851,6 +18020,19 @@
    {
     "patchline": {
      "source": [
+      "obj-369",
+      0
+     ],
+     "destination": [
+      "obj-370",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-370",
       0
      ],
@@ -17868,7 +18050,7 @@
       0
      ],
      "destination": [
-      "obj-372",
+      "obj-367",
       0
      ],
      "order": 0
@@ -17881,7 +18063,20 @@
       0
      ],
      "destination": [
-      "obj-368",
+      "obj-367",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-367",
+      0
+     ],
+     "destination": [
+      "obj-373",
       0
      ],
      "order": 0
@@ -17894,33 +18089,7 @@
       0
      ],
      "destination": [
-      "obj-368",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-368",
-      0
-     ],
-     "destination": [
       "obj-374",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-374",
-      0
-     ],
-     "destination": [
-      "obj-375",
       0
      ],
      "order": 0
@@ -18475,6 +18644,19 @@
    {
     "patchline": {
      "source": [
+      "obj-434",
+      0
+     ],
+     "destination": [
+      "obj-435",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-435",
       0
      ],
@@ -18492,7 +18674,7 @@
       0
      ],
      "destination": [
-      "obj-437",
+      "obj-432",
       0
      ],
      "order": 0
@@ -18505,7 +18687,20 @@
       0
      ],
      "destination": [
-      "obj-433",
+      "obj-432",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-432",
+      0
+     ],
+     "destination": [
+      "obj-438",
       0
      ],
      "order": 0
@@ -18518,33 +18713,7 @@
       0
      ],
      "destination": [
-      "obj-433",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-433",
-      0
-     ],
-     "destination": [
       "obj-439",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-439",
-      0
-     ],
-     "destination": [
-      "obj-440",
       0
      ],
      "order": 0
@@ -18865,6 +19034,19 @@
    {
     "patchline": {
      "source": [
+      "obj-475",
+      0
+     ],
+     "destination": [
+      "obj-476",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-476",
       0
      ],
@@ -18882,7 +19064,7 @@
       0
      ],
      "destination": [
-      "obj-478",
+      "obj-473",
       0
      ],
      "order": 0
@@ -18895,7 +19077,20 @@
       0
      ],
      "destination": [
-      "obj-474",
+      "obj-473",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-473",
+      0
+     ],
+     "destination": [
+      "obj-479",
       0
      ],
      "order": 0
@@ -18908,33 +19103,7 @@
       0
      ],
      "destination": [
-      "obj-474",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-474",
-      0
-     ],
-     "destination": [
       "obj-480",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-480",
-      0
-     ],
-     "destination": [
-      "obj-481",
       0
      ],
      "order": 0
@@ -19021,6 +19190,19 @@
    {
     "patchline": {
      "source": [
+      "obj-492",
+      0
+     ],
+     "destination": [
+      "obj-493",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-493",
       0
      ],
@@ -19038,7 +19220,7 @@
       0
      ],
      "destination": [
-      "obj-495",
+      "obj-490",
       0
      ],
      "order": 0
@@ -19051,7 +19233,20 @@
       0
      ],
      "destination": [
-      "obj-491",
+      "obj-490",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-490",
+      0
+     ],
+     "destination": [
+      "obj-496",
       0
      ],
      "order": 0
@@ -19064,33 +19259,7 @@
       0
      ],
      "destination": [
-      "obj-491",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-491",
-      0
-     ],
-     "destination": [
       "obj-497",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-497",
-      0
-     ],
-     "destination": [
-      "obj-498",
       0
      ],
      "order": 0
@@ -19333,6 +19502,19 @@
    {
     "patchline": {
      "source": [
+      "obj-525",
+      0
+     ],
+     "destination": [
+      "obj-526",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-526",
       0
      ],
@@ -19350,7 +19532,7 @@
       0
      ],
      "destination": [
-      "obj-528",
+      "obj-523",
       0
      ],
      "order": 0
@@ -19363,7 +19545,20 @@
       0
      ],
      "destination": [
-      "obj-524",
+      "obj-523",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-523",
+      0
+     ],
+     "destination": [
+      "obj-529",
       0
      ],
      "order": 0
@@ -19376,33 +19571,7 @@
       0
      ],
      "destination": [
-      "obj-524",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-524",
-      0
-     ],
-     "destination": [
       "obj-530",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-530",
-      0
-     ],
-     "destination": [
-      "obj-531",
       0
      ],
      "order": 0
@@ -19645,6 +19814,19 @@
    {
     "patchline": {
      "source": [
+      "obj-558",
+      0
+     ],
+     "destination": [
+      "obj-559",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-559",
       0
      ],
@@ -19662,7 +19844,7 @@
       0
      ],
      "destination": [
-      "obj-561",
+      "obj-556",
       0
      ],
      "order": 0
@@ -19675,7 +19857,20 @@
       0
      ],
      "destination": [
-      "obj-557",
+      "obj-556",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-556",
+      0
+     ],
+     "destination": [
+      "obj-562",
       0
      ],
      "order": 0
@@ -19688,33 +19883,7 @@
       0
      ],
      "destination": [
-      "obj-557",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-557",
-      0
-     ],
-     "destination": [
       "obj-563",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-563",
-      0
-     ],
-     "destination": [
-      "obj-564",
       0
      ],
      "order": 0
@@ -20113,6 +20282,19 @@
    {
     "patchline": {
      "source": [
+      "obj-607",
+      0
+     ],
+     "destination": [
+      "obj-608",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-608",
       0
      ],
@@ -20130,7 +20312,7 @@
       0
      ],
      "destination": [
-      "obj-610",
+      "obj-605",
       0
      ],
      "order": 0
@@ -20143,7 +20325,20 @@
       0
      ],
      "destination": [
-      "obj-606",
+      "obj-605",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-605",
+      0
+     ],
+     "destination": [
+      "obj-611",
       0
      ],
      "order": 0
@@ -20156,33 +20351,7 @@
       0
      ],
      "destination": [
-      "obj-606",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-606",
-      0
-     ],
-     "destination": [
       "obj-612",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-612",
-      0
-     ],
-     "destination": [
-      "obj-613",
       0
      ],
      "order": 0
@@ -20581,6 +20750,19 @@
    {
     "patchline": {
      "source": [
+      "obj-656",
+      0
+     ],
+     "destination": [
+      "obj-657",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-657",
       0
      ],
@@ -20598,7 +20780,7 @@
       0
      ],
      "destination": [
-      "obj-659",
+      "obj-654",
       0
      ],
      "order": 0
@@ -20611,7 +20793,20 @@
       0
      ],
      "destination": [
-      "obj-655",
+      "obj-654",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-654",
+      0
+     ],
+     "destination": [
+      "obj-660",
       0
      ],
      "order": 0
@@ -20624,33 +20819,7 @@
       0
      ],
      "destination": [
-      "obj-655",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-655",
-      0
-     ],
-     "destination": [
       "obj-661",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-661",
-      0
-     ],
-     "destination": [
-      "obj-662",
       0
      ],
      "order": 0
@@ -20729,6 +20898,84 @@
      ],
      "destination": [
       "obj-670",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-673",
+      0
+     ],
+     "destination": [
+      "obj-674",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-674",
+      0
+     ],
+     "destination": [
+      "obj-675",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-675",
+      0
+     ],
+     "destination": [
+      "obj-671",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-676",
+      0
+     ],
+     "destination": [
+      "obj-671",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-671",
+      0
+     ],
+     "destination": [
+      "obj-677",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-677",
+      0
+     ],
+     "destination": [
+      "obj-678",
       0
      ],
      "order": 0

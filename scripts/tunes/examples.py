@@ -2,7 +2,7 @@
 
 shi_bei_jiu   the traditional tune, phrased for a yehu
 mo_li_hua     the traditional tune for four yehus, in heterophony
-slow_air      swells (CC 11), late vibrato (CC 1) and slides (CC 65, CC 5), for the mapping
+slow_air      swells (CC 11), late vibrato (CC 77) and slides (CC 65, CC 5), for the mapping
               keyboard-expressive
 bow_pressure  from flautando to scratch (CC 71) and from sul tasto to sul ponticello (CC 74), for
               the same mapping

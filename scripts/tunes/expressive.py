@@ -65,7 +65,7 @@ VIBRATO_FROM_S, VIBRATO_FADE_S = 0.5, 0.4  # after the start of the note, before
 SLIDE_CENTS, SLIDE_S = 180.0, 0.22
 
 ORDINARY_FORCE, ORDINARY_POSITION = 40, 64  # CC 71, CC 74
-EXPRESSION, VIBRATO, FORCE, POSITION, GLIDE_TIME, GLIDE = 11, 1, 71, 74, 5, 65
+EXPRESSION, VIBRATO, FORCE, POSITION, GLIDE_TIME, GLIDE = 11, 77, 71, 74, 5, 65
 
 Curve = Callable[[float], float]  # a value for each tick
 
@@ -212,7 +212,7 @@ def at_rest() -> list[Event]:
 
 
 def vibrato_depths(notes: list[Note], loudness: Curve, bpm: int) -> list[Event]:
-    """Return CC 1 for the vibrato of long notes, deeper on louder notes."""
+    """Return CC 77 for the vibrato of long notes, deeper on louder notes."""
     events: list[Event] = []
     for note in notes:
         if note.shaken:
@@ -248,7 +248,7 @@ def slow_air() -> MidiFile:
         *(event for note in notes for event in strokes(note)),
     ]
     slowing = [(end - left * QUARTER, float(bpm)) for left, bpm in RITARDANDO]
-    about = "A slow air: swells by CC 11, vibrato by CC 1, slides by CC 65. For keyboard-expressive"
+    about = "A slow air: swells by CC 11, vibrato by CC 77, slides by CC 65. For keyboard-expressive"
     return file("Slow Air", about, [(0, AIR_BPM), *slowing], events)
 
 

@@ -54,9 +54,10 @@ def test_a_shipped_mapping_is_explained_and_audible_before_any_controller_moves(
 def test_the_keyboard_mapping_gives_each_controller_its_role():
     roles = {
         "bend": ["/playing/bend"],
-        "pressure": ["/playing/press"],
-        "poly-pressure": ["/playing/press"],
-        "cc 1": ["/playing/vibrato", "/playing/vibrato_press"],
+        "pressure": ["/playing/press", "/playing/vibrato_press"],
+        "poly-pressure": ["/playing/press", "/playing/vibrato_press"],
+        "cc 1": ["/playing/intensity"],
+        "cc 77": ["/playing/vibrato"],
         "velocity": ["/playing/velocity", "/playing/pressure"],
         "cc 7": ["/playing/volume"],
         "cc 10": ["/room/pan"],

@@ -24,7 +24,7 @@ NO_PRESET = "none"
 # Hosts keep the number of a choice: new ones come last. (Presets have numbers: their programs.)
 MAPPINGS = (
     DEFAULT, "keyboard-expressive", "mpe", "sustain-pedal-tremolo", "wind", "keyboard-bow-speed",
-    "keyboard-articulations",
+    "keyboard-articulations", "keyboard-vibrato-wheel",
 )  # fmt: skip
 
 

@@ -36,6 +36,7 @@ from yehu_server.core.player.parameter_indices import (
     DYNAMICS,
     EVENNESS,
     EXPRESSION,
+    INTENSITY,
     IS_ENGINES,
     IS_PLAYER_CONTROLLED,
     LISTENING,
@@ -170,7 +171,7 @@ def apply_parameter_change(p: Any, c: Any, index: int) -> None:
         notes.follow_bend(p, c)
     elif index == PRESS:
         left_hand.press(p, c, notes.min_press(p, max(p.string, 0)), left_hand.LANDING_MS)
-    elif index == DYNAMICS:
+    elif index in (DYNAMICS, INTENSITY):
         notes.update_bow(p, c)
         notes.follow_bend(p, c)
         notes.set_level(p, c)

@@ -43,7 +43,6 @@ from yehu_server.core.player.parameter_indices import (
     BOW_ASSIST,
     BOW_SIDE,
     BOW_SPEED,
-    DYNAMICS,
     EXPRESSION,
     OUTPUT_LEVEL,
     PIZZICATO,
@@ -280,7 +279,8 @@ def set_assist(p: Any, c: Any) -> None:
 def set_level(p: Any, c: Any) -> None:
     """Set the output's level."""
     level = (p.value[VOLUME] * p.value[EXPRESSION]) ** 2
-    level *= p.value[DYNAMICS] * math.sqrt(p.value[DYNAMICS])  # to the DYNAMICS_EXPONENT
+    dynamics = right_hand.requested_dynamics(p)
+    level *= dynamics * math.sqrt(dynamics)  # to the DYNAMICS_EXPONENT
     move_parameter(p, c, OUTPUT_LEVEL, level, DEFAULT_RAMP_MS)
 
 

@@ -38,6 +38,7 @@ OUTPUT_LEVEL, OUTPUT_BALANCE = INDEX["/output/level"], INDEX["/output/balance"]
 # What it is requested.
 EVENNESS, BRILLIANCE = INDEX["/body/evenness"], INDEX["/playing/brilliance"]
 DYNAMICS, SPEED = INDEX["/playing/dynamics"], INDEX["/playing/speed"]
+INTENSITY = INDEX["/playing/intensity"]
 PRESSURE, POSITION = INDEX["/playing/pressure"], INDEX["/playing/bow_position"]
 TREMOLO, PIZZICATO = INDEX["/playing/tremolo"], INDEX["/playing/pizzicato"]
 TREMOLO_DEPTH = INDEX["/playing/tremolo_depth"]

@@ -7,6 +7,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SIDE
+from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -39,6 +40,7 @@ from yehu_server.core.player.parameter_indices import (
     DYNAMICS,
     FINGER_COUNT,
     FINGER_PRESS,
+    INTENSITY,
     PLUCK_FORCE,
     PLUCK_POSITION,
     POSITION,
@@ -63,6 +65,10 @@ LIFT_BEFORE_PLUCK_MS = 20.0  # before a pluck
 SLURRED_MS = 25.0  # ramp of bow speed from one slurred note to the next
 # Bow speed at dynamics 0, as a fraction of that at full dynamics. By ear.
 MIN_SPEED_FRACTION = 0.45
+# Factor on the dynamics of the whole range of intensity, as a power of 2, for some 20 dB: 15 below
+# its default, 5 above.
+INTENSITY_OCTAVES = 1.75
+DEFAULT_INTENSITY = find("/playing/intensity").default
 MIN_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow is lifted
 # A heavy stroke on the inner string begins with this share of its pressure: with more, the first
 # periods are too long and the note begins flat. Under MIN_INNER_ATTACK it may slip twice in a
@@ -76,9 +82,16 @@ DEFAULT_PLUCK_POSITION = find("/pluck/position").default
 
 
 @compiled_exactly
+def requested_dynamics(p: Any) -> float:
+    """The dynamics that are asked for, with the intensity: 1 at the defaults."""
+    octaves = INTENSITY_OCTAVES * (p.value[INTENSITY] - DEFAULT_INTENSITY)
+    return float(p.value[DYNAMICS] * exp2(octaves))
+
+
+@compiled_exactly
 def requested_speed(p: Any) -> float:
     """The bow speed that is asked for (m/s)."""
-    fraction = MIN_SPEED_FRACTION + (1.0 - MIN_SPEED_FRACTION) * p.value[DYNAMICS]
+    fraction = MIN_SPEED_FRACTION + (1.0 - MIN_SPEED_FRACTION) * requested_dynamics(p)
     return float(
         p.value[SPEED] * fraction * struck_speed(p) * p.speed_variation * p.stroke_speed_factor
     )

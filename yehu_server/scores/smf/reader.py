@@ -45,6 +45,8 @@ MAX_BYTES = 64 * 2**20
 MAX_REST_S = 30  # between the last message and the end of a track
 _Song = tuple[list[Track], int, int]  # what sounds together, number of the first, the division
 
+MOD_WHEEL = 1  # controller
+
 
 def ended(messages: Sequence[Placed], faults: DamageReport) -> list[Placed]:
     """Return messages in order, with a note-off for each note that nothing ends.
@@ -163,7 +165,7 @@ def _play_together(
     # Sorting is stable: at one tick, the order of the tracks and within them stays.
     tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
     messages = sorted((placed for track in tracks for placed in track.messages), key=itemgetter(0))
-    messages = ended(messages, faults)
+    messages = without_resting_wheels(ended(messages, faults))
     clock = Clock(division, tempos)
     last = max(tracks, key=lambda track: track.end)
     end_s = clock.seconds(last.end)
@@ -201,6 +203,19 @@ def _play_together(
         remarks=remarks,
         keys=_keys(tracks, division),
     )
+
+
+def without_resting_wheels(messages: Sequence[Placed]) -> list[Placed]:
+    """The messages without CC 1 of channels where it is 0 throughout: a wheel that nobody moves."""
+
+    def is_wheel(message: mido.Message) -> bool:
+        return message.type == "control_change" and message.control == MOD_WHEEL
+
+    wheels = [message for _, message, _ in messages if is_wheel(message)]
+    moved = {message.channel for message in wheels if message.value > 0}
+    return [
+        placed for placed in messages if not is_wheel(placed[1]) or placed[1].channel in moved
+    ]
 
 
 def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:

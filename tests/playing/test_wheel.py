@@ -1,0 +1,106 @@
+"""With the default mapping the mod wheel draws the bow, and aftertouch rocks the finger."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import mido
+import numpy as np
+import pytest
+
+import yehu_server as yehu
+
+RATE, SEEDS = 22050, (0, 1)
+KEYS = (67, 74, 79)
+
+
+@pytest.fixture
+def rendered(tmp_path: Path):
+    """A function that renders a note of 2.5 s after some messages, and returns its middle."""
+
+    def render(key: int, messages: Sequence[mido.Message], seed: int, **options: str) -> np.ndarray:
+        note = mido.Message("note_on", note=key, velocity=80)
+        end = mido.Message("note_off", note=key, time=2400)
+        track = mido.MidiTrack([note, *messages, end])
+        path = tmp_path / "note.mid"
+        mido.MidiFile(tracks=[track]).save(path)
+        more = {"phrasing": 0.0, "dry": True, "mono": True, "sample_rate": RATE}
+        return yehu.render(path, seed=seed, **more, **options).sound[RATE : 2 * RATE]
+
+    return render
+
+
+def wheel(*positions: int) -> list[mido.Message]:
+    return [mido.Message("control_change", control=1, value=value) for value in positions]
+
+
+def level_db(sound: np.ndarray) -> float:
+    return float(10.0 * np.log10(np.mean(np.square(sound)) + 1e-12))
+
+
+def width_cents(sound: np.ndarray, key: int) -> float:
+    """How far the pitch of the first harmonic sways at 4 to 9 Hz, to either side."""
+    frequency = 440.0 * 2.0 ** ((key - 69) / 12.0)
+    shifted = sound * np.exp(-2j * np.pi * frequency * np.arange(len(sound)) / RATE)
+    window = np.hanning(round(8.0 * RATE / frequency) | 1)
+    phase = np.unwrap(np.angle(np.convolve(shifted, window / window.sum(), "valid")))
+    cents = 1200.0 * np.log2(1.0 + np.diff(phase) * RATE / (2.0 * np.pi * frequency))
+    spectrum = np.fft.rfft((cents - cents.mean()) * np.hanning(len(cents)))
+    hertz = np.fft.rfftfreq(len(cents), 1.0 / RATE)
+    return float(4.0 * np.abs(spectrum[(hertz > 4.0) & (hertz < 9.0)]).max() / len(cents))
+
+
+def test_the_wheel_moves_the_level_over_some_20_db_and_never_to_silence(rendered) -> None:
+    for key in KEYS:
+        levels = [
+            np.mean([level_db(rendered(key, wheel(127, value), seed)) for seed in SEEDS])
+            for value in (0, 32, 64, 95, 127)
+        ]
+        assert (np.diff(levels) > 2.0).all(), (key, levels)
+        assert 17.0 < levels[-1] - levels[0] < 22.0, (key, levels)
+        untouched = np.mean([level_db(rendered(key, [], seed)) for seed in SEEDS])
+        assert levels[3] == pytest.approx(untouched, abs=0.5), key
+
+
+def test_a_wheel_that_stays_down_or_is_reset_counts_as_not_moved(rendered) -> None:
+    untouched = rendered(74, [], 0)
+    np.testing.assert_array_equal(rendered(74, wheel(0, 0), 0), untouched)
+    reset = mido.Message("control_change", control=121, value=0)
+    assert level_db(rendered(74, [*wheel(30), reset], 0)) == pytest.approx(
+        level_db(untouched), abs=0.5
+    )
+    assert level_db(rendered(74, wheel(1, 0), 0)) < level_db(untouched) - 10.0
+
+
+def test_expression_multiplies_down_to_the_bow_leaving_the_string(rendered) -> None:
+    soft = mido.Message("control_change", control=11, value=40)
+    off = mido.Message("control_change", control=11, value=0)
+    louder = [level_db(rendered(74, [*wheel(value), soft], 0)) for value in (20, 60, 120)]
+    assert (np.diff(louder) > 4.0).all()
+    assert level_db(rendered(74, [*wheel(127), off], 0)) < -70.0
+
+
+@pytest.mark.parametrize("kind", ["aftertouch", "polytouch"])
+def test_aftertouch_rocks_the_finger_the_more_the_harder_it_is(rendered, kind: str) -> None:
+    for key in KEYS:
+        own = {"note": key} if kind == "polytouch" else {}
+        widths = [
+            np.mean(
+                [
+                    width_cents(rendered(key, [mido.Message(kind, value=value, **own)], seed), key)
+                    for seed in SEEDS
+                ]
+            )
+            for value in (0, 80, 127)
+        ]
+        assert widths[0] < 3.0, (key, widths)
+        assert widths[0] < widths[1] < widths[2], (key, widths)
+        assert widths[2] > 4.0, (key, widths)
+
+
+def test_a_mapping_keeps_vibrato_on_the_wheel(rendered) -> None:
+    named = {"mapping": "keyboard-vibrato-wheel"}
+    widths = [width_cents(rendered(74, wheel(value), 0, **named), 74) for value in (1, 127)]
+    assert widths[0] < 4.0
+    assert widths[1] > 20.0

@@ -1,6 +1,6 @@
 """The table of OSC calls beside the parameters: what each does, and how clients are shown it.
 
-``part_calls``, ``preset_calls``, ``learn_calls`` and ``server_calls`` have the rows, each beside
+``playing_calls``, ``preset_calls``, ``learn_calls`` and ``server_calls`` have the rows, each beside
 the method that carries it out; docs/osc.md describes them.
 """
 

@@ -215,14 +215,23 @@ def test_silence_is_a_players_own_an_owners_for_all_and_a_listener_or_a_stranger
     assert RELEASE_ALL in visit("own", COMMANDS["silence"])[0]
 
 
-def test_a_page_that_commands_too_much_has_to_wait(monkeypatch):
-    waited: list[float] = []
+def test_a_page_that_commands_too_much_has_to_wait_and_so_has_one_whose_queue_is_full(monkeypatch):
+    clock, waited, full = StillTime(1000.0), [], []
 
     async def wait(seconds: float) -> None:
+        clock.now += seconds
         waited.append(seconds)
+        full.clear()
 
     monkeypatch.setattr(limits, "PAGE_EVENTS_A_SECOND", 0.001)
     monkeypatch.setattr(limits, "PAGE_EVENTS_AT_ONCE", 3.0)
+    monkeypatch.setattr(serving, "AT_ONCE", 2)
+    monkeypatch.setattr(serving, "time", clock)
+    monkeypatch.setattr(View, "room", lambda *_: 0 if full else 100)
     monkeypatch.setattr(serving, "asyncio", SimpleNamespace(**vars(asyncio) | {"sleep": wait}))
-    assert visit("own", *[COMMANDS["a note"]] * 6, at_once=2)[0] == [BEGIN] * 6
-    assert waited == pytest.approx([1000.0, 3000.0], rel=0.01)
+    assert visit("own", *[COMMANDS["a note"]] * 6, at_once=6)[0] == [BEGIN] * 6
+    assert waited == pytest.approx([1000.0, 2000.0])
+    waited.clear()
+    full.append(True)
+    assert visit("own", COMMANDS["a note"])[0] == [BEGIN]
+    assert waited == [serving.ROOM_S]

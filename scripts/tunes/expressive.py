@@ -248,7 +248,9 @@ def slow_air() -> MidiFile:
         *(event for note in notes for event in strokes(note)),
     ]
     slowing = [(end - left * QUARTER, float(bpm)) for left, bpm in RITARDANDO]
-    about = "A slow air: swells by CC 11, vibrato by CC 77, slides by CC 65. For keyboard-expressive"
+    about = (
+        "A slow air: swells by CC 11, vibrato by CC 77, slides by CC 65. For keyboard-expressive"
+    )
     return file("Slow Air", about, [(0, AIR_BPM), *slowing], events)
 
 

@@ -57,7 +57,7 @@ def test_what_is_asked_for_at_a_time_happens_then_and_the_same_again_after_a_res
         assert fiddle.pitch is None
         fiddle.play(0.25)
         assert fiddle.time == pytest.approx(1.45, abs=1e-4)
-        refused("0.2 s is over", fiddle.note_on, "A4", at=0.2)
+        refused("0.2 s is in the past", fiddle.note_on, "A4", at=0.2)
         fiddle.reset()
     np.testing.assert_array_equal(*takes)
 

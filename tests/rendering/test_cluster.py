@@ -197,7 +197,7 @@ def test_a_scheduler_that_is_lost_is_reported(own, monkeypatch):
 
 def test_without_dask_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(YehuError, match=r"pip install yehu-server\[cluster\]"):
+    with pytest.raises(YehuError, match=r"-m pip install 'yehu-server\[cluster\]'"):
         Cluster("127.0.0.1")
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from yehu_lab.body.curve import KINDS, Curve, Floats, to_mobility
 from yehu_lab.body.modes import mode_columns, stacked
 from yehu_server.errors import MeasurementError
-from yehu_server.util.extras import require_package
+from yehu_server.util.hints import require_package
 
 DOUBTFUL = 0.97  # share of the real part that is above zero
 LINES = 300  # of the measurement, that are checked

@@ -14,7 +14,7 @@ import numpy as np
 
 from yehu_lab.body.curve import Complexes, Floats, interpolated
 from yehu_lab.body.modes import Modes, Numbers, Problem, Step, step_at
-from yehu_server.util.extras import require_package
+from yehu_server.util.hints import require_package
 
 HIGHEST_ORDER = 40  # of the polynomials; each order gives candidates
 MAX_LINES = 4000  # of the even grid that the method needs

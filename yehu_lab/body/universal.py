@@ -14,8 +14,8 @@ from yehu_lab.body.curve import RADIATION, Curve
 from yehu_lab.body.tables import Response, rising
 from yehu_lab.body.tap import Tap, cut
 from yehu_server.errors import MeasurementError
-from yehu_server.util.extras import require_package
 from yehu_server.util.files import error_reason, read_bytes
+from yehu_server.util.hints import require_package
 
 ENDINGS = (".uff", ".unv", ".uf", ".bunv")
 MAX_BYTES = 256 * 2**20

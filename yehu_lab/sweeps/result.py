@@ -21,8 +21,8 @@ from yehu_lab.sweeps.study import Study, study_of
 from yehu_server.errors import ParameterError
 from yehu_server.simulation.labels import as_data, as_json, hash_of
 from yehu_server.util import __version__
-from yehu_server.util.extras import require_package
 from yehu_server.util.files import replace_any, replacing
+from yehu_server.util.hints import require_package
 from yehu_server.util.npz_file import read_npz
 
 if TYPE_CHECKING:

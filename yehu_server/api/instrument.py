@@ -420,7 +420,7 @@ class Instrument:
             return None
         frame = round(number(at, "at") * self._rate)
         if frame < self._engine.frame:
-            raise ParameterError(f"at: {at:g} s is over; the instrument is at {self.time:g} s")
+            raise ParameterError(f"at: {at:g} s is in the past (now {self.time:g} s)")
         return frame
 
     def _frames(self, seconds: float) -> int:

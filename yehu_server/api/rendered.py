@@ -144,10 +144,11 @@ def render(
     sample_rate, instrument, preset, settings, a4, tuning, practice, seed
         As of `Instrument`. Rooms are presets too: ``preset="hall"``.
     phrasing : float
-        How much plain notes are shaped, 0 to 1; by default 0.5 for files and 0 for notes.
+        How much plain notes are shaped, 0 to 1; by default 0.5, as of the command;
+        0 for the score of `follow`.
     rubato : float
-        How far the tempo of a score, or a MIDI file in time, gives way within phrases and at the
-        end, 0 to 1; by default as `phrasing`. Phrases begin on time; at 0 all notes do.
+        Tempo flexibility, 0 to 1; 0 is strict time. By default as `phrasing`. Phrases begin on
+        time.
     dry : bool
         Without a room.
     mono : bool
@@ -207,7 +208,7 @@ def render(
         phrasing=None if phrasing is None else number(phrasing, "phrasing", 0.0, 1.0),
         rubato=None if rubato is None else number(rubato, "rubato", 0.0, 1.0),
         gain_db=None if gain_db is None else number(gain_db, "gain_db", *GAIN_DB),
-    ).shaping(PHRASING if is_file else 0.0)
+    ).shaping(0.0 if isinstance(score, Score) else PHRASING)
     options = Options(
         rate=rate,
         tail_s=None if tail is None else number(tail, "tail", 0.0, LONGEST_TAIL_S),
@@ -226,6 +227,7 @@ def render(
     else:
         read = score_of(score)
     whole_part = Part.shaped([read], playing)
+    whole_part.check_is_heard()
     get_ready()
     sound, asked, summary = _played(whole_part, options, progress)
     warnings = (*read.remarks, *read.warnings, *summary.remarks())

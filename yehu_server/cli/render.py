@@ -1,4 +1,4 @@
-"""Render MIDI files, one after another, to a sound file; or those of a folder, each to its own.
+"""Render scores, one after another, to a sound file; or those of a folder, each to its own.
 
   yehu-server render tune.mid -o tune.wav
   yehu-server render tune.mid -o tune.flac --rate 48000 --normalize
@@ -48,7 +48,7 @@ def add_to(commands: Any) -> None:
     parser = add_command(commands, "render", __doc__, run)
     add_options(
         parser,
-        "midi IN.mid: the MIDI files, or a folder of them; - reads standard input",
+        "midi SCORE: files of MIDI, MusicXML, ABC or jianpu, or a folder; - reads standard input",
         midi={"nargs": "+", "type": score_source},
     )
     add_output(parser, sound_target, "; - writes standard output; of a folder, a folder")
@@ -62,9 +62,8 @@ def add_to(commands: Any) -> None:
             repeated (default: of a written score the first, of a MIDI file all)
         --phrasing SHARE: how much plain notes are shaped, by phrases, accents, slurs, vibrato and
             slides; what a file marks stays: 0 to 1 (default: 0.5; 0: exactly as written)
-        --rubato SHARE: how far the tempo of scores, and of MIDI files in time, gives way within
-            phrases, which still begin on time, and at the end: 0 to 1 (default: as --phrasing; 0:
-            every note begins as written, as other music needs that plays beside it)
+        --rubato SHARE: tempo flexibility within phrases and at the end, 0 to 1; 0 is strict time
+            (default: as --phrasing)
         --song N: play only the N-th song of each file, where a file has several (default: one after
             another)
         --strict: refuse MIDI files with any damage, with exit code 1 (default: warn)

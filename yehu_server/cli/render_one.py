@@ -66,7 +66,9 @@ def rendered(
     options = sound_options_of(arguments, form)
     scores = cache(partial(_scores, arguments, playing))
     if arguments.ensemble is None:
-        players = Players((Part.shaped(scores(playing.quantities), playing),))
+        part = Part.shaped(scores(playing.quantities), playing)
+        part.check_is_heard()
+        players = Players((part,))
     else:
         players = players_of(arguments, scores, playing)
     read = [*arguments.midi, *playing.files, *players.files]

@@ -19,6 +19,7 @@ from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.rendering.replay import Replayed
 from yehu_server.rendering.summary import PartSummary, Summary, counted
 from yehu_server.simulation.run import Simulation
+from yehu_server.util.hints import command_name
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -183,8 +184,8 @@ def connect_lines(
     lines = [f"OSC at {format_address(host, port)} (UDP and TCP), such as {PREFIX}/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
-        hint = f"yehu-server serve --osc {lan.ip}:{port} --osc-allow {lan.network}"
-        lines.append(f"for a phone on this network: {hint}")
+        hint = f"{command_name()} serve --osc {lan.ip}:{port} --osc-allow {lan.network}"
+        lines.append(f"for OSC from other machines of this network: {hint}")
     else:
         where = lan.ip if address.is_unspecified else host
         lines.append(f"on a phone (TouchOSC): host {where}, send port {port}")
@@ -204,7 +205,7 @@ def page_lines(
     lines = [f"the page at http://{format_address('127.0.0.1' if is_anywhere else host, port)}/"]
     phones = page_for_phones(host, port, lan, guests)
     if not phones:
-        lines.append("for a phone on this network: yehu-server serve --lan")
+        lines.append(f"for a phone on this network: {command_name()} serve --lan")
         return lines
     if is_anywhere:
         lines.append(f"on a phone: {phones}")

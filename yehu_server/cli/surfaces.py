@@ -19,6 +19,7 @@ from yehu_server.cli.terminal import print_result
 from yehu_server.errors import ParameterError
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
 from yehu_server.util.files import make_folder
+from yehu_server.util.hints import command_name
 
 
 def add_to(commands: Any) -> None:
@@ -64,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         for surface in stale:
             print_result(
                 f"{file_of(surface, folder, part)}: stale; "
-                f"yehu-server surfaces -o {folder} writes it"
+                f"{command_name()} surfaces -o {folder} writes it"
             )
         return 1 if stale else 0
     make_folder(folder)

@@ -13,8 +13,8 @@ import numpy as np
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import MAX_DURATION_H, check_duration
-from yehu_server.util.extras import require_package
 from yehu_server.util.files import error_reason, open_regular
+from yehu_server.util.hints import require_package
 
 Array = Any
 

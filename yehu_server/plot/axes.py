@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.errors import ParameterError
-from yehu_server.util.extras import require_package
+from yehu_server.util.hints import require_package
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import OutputError, one_line
-from yehu_server.util.extras import require_package
 from yehu_server.util.files import (
     check_free,
     check_target,
@@ -17,6 +16,7 @@ from yehu_server.util.files import (
     replace_any,
     replacing,
 )
+from yehu_server.util.hints import require_package
 
 SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
 DPI = 110

@@ -18,6 +18,7 @@ from yehu_server.plugin.header import header
 from yehu_server.plugin.objects import make_objects, object_file
 from yehu_server.plugin.parameters import parameters
 from yehu_server.plugin.targets import ALL, NAMES, X11, System, systems_of
+from yehu_server.util.hints import install_command
 
 SOURCE = Path(__file__).parent / "source"
 COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "text.cpp")
@@ -119,9 +120,7 @@ def compiler_of(system: System) -> list[str]:
         return [sys.executable, "-m", "ziglang", "c++", "-target", system.zig]
     if system.is_here:
         raise YehuError("there is no C++ compiler here; Debian's package g++ has it")
-    raise YehuError(
-        f"building for {system.name} needs zig; install it: pip install yehu-server[plugin]"
-    )
+    raise YehuError(f"building for {system.name} needs zig: {install_command('plugin')}")
 
 
 def compile_file(source: Path, into: Path, system: System, headers: Path) -> None:

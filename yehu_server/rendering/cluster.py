@@ -25,7 +25,7 @@ from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.plain_unpickling import ForeignError, plain_client
 from yehu_server.rendering.workers import Event, Perform
 from yehu_server.util.documents import Document
-from yehu_server.util.extras import require_package
+from yehu_server.util.hints import require_package
 from yehu_server.util.values import line
 
 PORT = 8786  # Dask's own choice

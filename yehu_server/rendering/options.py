@@ -6,10 +6,12 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.stage.image_sources import EARS
+from yehu_server.errors import ScoreError
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.phrasing import is_fingered, phrased
-from yehu_server.scores.score import Score, concatenate
+from yehu_server.scores.score import Score, concatenate, notes_of
 
 BLOCK = 1 << 14  # frames; the sound does not depend on it
 
@@ -29,6 +31,23 @@ class Part:
         if is_fingered(score):
             playing = replace(playing, phrasing=0.0)
         return cls(score, playing, name or score.name)
+
+    def check_is_heard(self) -> None:
+        """Check that one of the score's notes is played; raises ScoreError where it has some."""
+        found = sorted({note.channel for note in notes_of(self.score)})
+        chosen = self.playing.channels
+        if chosen is None:
+            is_mpe = self.playing.mapping.mpe
+            chosen = frozenset(found if is_mpe else {*found} - {PERCUSSION_CHANNEL})
+        if not found or not chosen.isdisjoint(found):
+            return
+        if found == [PERCUSSION_CHANNEL]:
+            raise ScoreError(
+                f"{self.score.name}: all its notes are of channel 10, percussion, which is played "
+                "only if it is chosen"
+            )
+        asked, has = (", ".join(str(each + 1) for each in of) for of in (sorted(chosen), found))
+        raise ScoreError(f"{self.score.name}: no note is of channel {asked}, but of {has}")
 
 
 @dataclass(frozen=True)

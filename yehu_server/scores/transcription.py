@@ -118,7 +118,7 @@ def _left_out(event: ScoreEvent) -> str:
     """The name of a message that notation has no sign for; empty where it has one."""
     message = event.message
     if message.type == "control_change":
-        return "" if message.control in SELECTING else f"controller {message.control}"
+        return "" if message.control in SELECTING else f"CC {message.control}"
     return LEFT_OUT.get(message.type, "")
 
 

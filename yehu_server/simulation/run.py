@@ -24,8 +24,8 @@ from yehu_server.errors import OutputError
 from yehu_server.scores.gesture import CONTROLS, Gesture
 from yehu_server.simulation.labels import as_data, as_json, dimensions, hash_of, label_of
 from yehu_server.util import __version__
-from yehu_server.util.extras import require_package
 from yehu_server.util.files import replacing
+from yehu_server.util.hints import require_package
 from yehu_server.util.npz_file import read_npz
 
 if TYPE_CHECKING:

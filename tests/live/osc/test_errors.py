@@ -7,6 +7,8 @@ from typing import Any
 
 from wire import FakePeer
 
+from yehu_server.live import limits
+
 NAN, INF = math.nan, math.inf
 NOTHING: tuple[Any, ...] = ()
 
@@ -18,6 +20,7 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/note", [(NAN, 90.0), (67.0, NAN), (67.0, INF)], "not finite"),
     ("/note/off", [(-1,), (127.5, 0)], "not within"),
     ("/pitch", [(-1,), (127.5,)], "not within"),
+    ("/subscribe", [(9777,)], "for a port, send seconds first: 600 9777"),
     ("/bow", [NOTHING, (0.2,), (0.2, 0.5, 1.0)], "expected 2 arguments"),
     ("/bow", [(0.2, "x"), (NAN, 0.5), (0.2, INF)], ""),
     ("/bend", [("x",)], "expected a number"),
@@ -108,3 +111,27 @@ def test_a_malformed_packet_is_counted_and_answered(still):
         (refused,) = still.peer.received()
         assert "malformed" in refused.arguments[1]
     assert still.handler.counts.malformed == len(packets)
+
+
+def test_a_wrong_message_is_logged_once_for_each_address_and_few_a_minute(still, wire):
+    for _ in range(3):
+        still.take(wire.message("/yehu/nots", 67.0, 90.0))
+    still.take(wire.message("/yehu/note", 67.0))
+    assert still.services.said == [
+        "OSC from peer:1: /yehu/nots: unknown address; did you mean /yehu/note?",
+        "OSC from peer:1: /yehu/note: expected 2 arguments, got 1",
+    ]
+    for number in range(100):
+        still.take(wire.message(f"/yehu/{number}", 1.0))
+    assert len(still.services.said) == limits.LOGGED_ERRORS_AT_ONCE
+    still.pass_time(60.0 / 1000)
+    still.clock.now += 60.0
+    for number in range(100):
+        still.take(wire.message(f"/yehu/more/{number}", 1.0))
+    assert len(still.services.said) <= limits.LOGGED_ERRORS_AT_ONCE + 6
+
+
+def test_a_pitch_beyond_the_range_is_answered_with_where_the_finger_goes(still):
+    answers = [message.arguments for message in still.ask("/pitch", 30.0)]
+    assert ["/yehu/pitch", "30 is outside F4 to F6; the finger goes to 65"] in answers
+    assert still.ask("/pitch", 70.0) == []

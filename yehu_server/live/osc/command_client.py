@@ -13,6 +13,7 @@ from yehu_server.live.network import Address, format_address
 from yehu_server.live.osc.packets import Message, PacketError, pack, unpack
 from yehu_server.params.table import PREFIX
 from yehu_server.util.files import error_reason
+from yehu_server.util.hints import command_name
 
 ANSWERS_WITHIN_S = 2.0
 DATAGRAM_BYTES = 1 << 16
@@ -73,4 +74,4 @@ class OscClient:
         for message in self.answers(within_s):
             if message.address == address:
                 return message
-        raise DeviceError(f"no server answers at {self._name}; is yehu-server serve running?")
+        raise DeviceError(f"no server answers at {self._name}; is {command_name()} serve running?")

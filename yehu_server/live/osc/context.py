@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-from yehu_server.errors import OutputError, YehuError
+from yehu_server.errors import OutputError, YehuError, shortened
 from yehu_server.live import limits
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.clients import Clients
@@ -49,6 +49,12 @@ class CallContext:
     schedule: Schedule = field(default_factory=Schedule)
     counts: Counts = field(default_factory=Counts)
     writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
+    wrong_addresses: set[str] = field(default_factory=set)  # whose errors were logged
+    logged_errors: TokenBucket = field(
+        default_factory=lambda: TokenBucket(
+            limits.LOGGED_ERRORS_A_SECOND, limits.LOGGED_ERRORS_AT_ONCE
+        )
+    )
     saves: TokenBucket = field(
         default_factory=lambda: TokenBucket(limits.SAVES_A_SECOND, limits.SAVES_AT_ONCE)
     )
@@ -67,7 +73,22 @@ class CallContext:
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         """Send a peer the reason why its message to an address was refused."""
         self.counts.errors += 1
+        if self._is_new_error(address):
+            reason = reason if isinstance(reason, str) else reason()
+            self.log(f"OSC from {peer.host}: {shortened(address)}: {shortened(reason)}")
         self.clients.send_error(peer, address, reason)
+
+    def _is_new_error(self, address: str) -> bool:
+        """Whether to log an error at an address: once for each, and few of all.
+
+        Who sends from one port and listens at another is never answered, and may see it there.
+        """
+        if address in self.wrong_addresses or not self.logged_errors.takes(time.monotonic()):
+            return False
+        if len(self.wrong_addresses) >= limits.WRONG_ADDRESSES:
+            self.wrong_addresses.clear()
+        self.wrong_addresses.add(address)
+        return True
 
     def tree_changed(self, path: str) -> None:
         """Announce that the tree has changed at a path or below."""

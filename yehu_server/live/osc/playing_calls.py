@@ -14,6 +14,7 @@ from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, UNIT
 from yehu_server.playing.part_state import within_midi
 from yehu_server.playing.player import Player
+from yehu_server.playing.stringing import range_text
 
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 CHOSEN = "/playing/articulation"
@@ -88,7 +89,10 @@ class PartCalls(GroupCalls):
     @osc_call("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", NOTE)
     def _pitch(self, call: Request) -> None:
         pitch = within_midi("pitch", call.numbers(1)[0])
-        self._player.slide(pitch, frame=call.frame)
+        accepted = self._player.slide(pitch, frame=call.frame)
+        if accepted != pitch:
+            notes = range_text(self._player.notes)
+            raise RefusedError(f"{pitch:g} is outside {notes}; the finger goes to {accepted:g}")
 
     @osc_call(
         "/bow",
@@ -163,6 +167,11 @@ class PartCalls(GroupCalls):
 
     def _subscribe_to(self, form: str, call: Request) -> None:
         numbers = call.numbers(0, 2)
+        if len(numbers) == 1 and numbers[0] > LONGEST_SUBSCRIPTION_S:
+            raise RefusedError(
+                f"{numbers[0]:g} s is more than an hour; for a port, send seconds first: "
+                f"600 {numbers[0]:g}"
+            )
         seconds = within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
         peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer
         if not self._clients.subscribe(peer, seconds, form, self._group):

@@ -209,13 +209,11 @@ def without_resting_wheels(messages: Sequence[Placed]) -> list[Placed]:
     """The messages without CC 1 of channels where it is 0 throughout: a wheel that nobody moves."""
 
     def is_wheel(message: mido.Message) -> bool:
-        return message.type == "control_change" and message.control == MOD_WHEEL
+        return bool(message.type == "control_change" and message.control == MOD_WHEEL)
 
     wheels = [message for _, message, _ in messages if is_wheel(message)]
     moved = {message.channel for message in wheels if message.value > 0}
-    return [
-        placed for placed in messages if not is_wheel(placed[1]) or placed[1].channel in moved
-    ]
+    return [placed for placed in messages if not is_wheel(placed[1]) or placed[1].channel in moved]
 
 
 def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:

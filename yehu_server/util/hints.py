@@ -1,0 +1,34 @@
+"""What hints name: the command as it was called, and how to get a library of an extra."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import shlex
+import sys
+
+from yehu_server.errors import ParameterError
+
+
+def command_name() -> str:
+    """The command as it was called: ``scripts/yehu`` says its own name in YEHU_COMMAND."""
+    return os.environ.get("YEHU_COMMAND", "yehu-server")
+
+
+def install_command(extra: str) -> str:
+    """The command that installs an extra for the Python that runs this, also in a checkout."""
+    return f"{shlex.quote(sys.executable)} -m pip install 'yehu-server[{extra}]'"
+
+
+def require_package(module: str, what: str, extra: str) -> None:
+    """Check that a library is there.
+
+    Raises ParameterError where it is missing, which names the extra that brings it.
+
+    `what`: what needs it, for the message.
+    """
+    try:
+        importlib.import_module(module)
+    except ImportError:
+        library = module.partition(".")[0]
+        raise ParameterError(f"{what} needs {library}: {install_command(extra)}") from None

@@ -39,7 +39,7 @@ RITARDANDO = ((8, 60), (6, 57), (5, 54))  # (beats before the end, tempo from th
 STUDY_BPM = 88
 SWEEPS = "67:3.75 r:0.25 70:3.75 r:0.25 74:3.75 r:0.25 79:3.75 r:0.25"
 PHRASE = "67:0.5~ 70:0.5 74:0.75~ 77:0.25 74:0.5~ 72:0.5 70:0.75 r:0.25"
-STUDY = f"r:2 (84) {SWEEPS} {SWEEPS} {PHRASE} {PHRASE} {PHRASE}"
+STUDY = f"r:2 (104) {SWEEPS} {SWEEPS} {PHRASE} {PHRASE} {PHRASE}"
 FORCES = (8, 40, 100)  # CC 71 in the three phrases: flautando, ordinary, pressed
 
 MPE_BPM = 76
@@ -52,13 +52,14 @@ r:1 (40) 74:1.5/p 77:0.5~ (68) 79:2 77:0.5~ 75+35:0.5~ 77:1 (44)
 MEMBERS = 15
 MASTER_RANGE, MEMBER_RANGE = 200, 4800  # cents up or down, from the MPE specification
 
-VELOCITY = {"p": 28, "": 68, "f": 106}
+VELOCITY = {"p": 48, "": 98, "f": 116}
 OVERLAP = 16  # ticks by which a slurred note overlaps the next
 GAP = 20  # ticks of silence between two bow strokes
 TAIL = 2 * QUARTER  # from the end of the last note to the end of the track
 SAMPLE_S, BEND_SAMPLE_S = 0.020, 0.010
 OPEN_STRINGS = (65, 72)  # notes without vibrato, as no finger stops them
 LONG = 3 * QUARTER // 2  # shortest note with vibrato
+LOUDEST, COMPRESSION = 127.0, 0.5  # of the levels below: as loud as other music, with a floor
 SWELL = 14  # added to the dynamics in the middle of notes of two beats or more
 VIBRATO_HZ, VIBRATO_CENTS = 5.5, 25.0
 VIBRATO_FROM_S, VIBRATO_FADE_S = 0.5, 0.4  # after the start of the note, before its end
@@ -140,7 +141,7 @@ def dynamics(notes: list[Note], levels: list[tuple[int, int]]) -> Curve:
             if start <= tick < end:
                 level = low + (high - low) * step((tick - start) / (end - start))
         swells = (hill(note.place(tick)) for note in notes if note.length >= 2 * QUARTER)
-        return min(level + SWELL * sum(swells), 127.0)
+        return LOUDEST * (min(level + SWELL * sum(swells), 127.0) / 127.0) ** COMPRESSION
 
     return curve
 

@@ -14,7 +14,7 @@ import numpy as np
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import MAX_DURATION_H, check_duration
 from yehu_server.util.extras import need
-from yehu_server.util.files import open_regular, why
+from yehu_server.util.files import why
 
 Array = Any
 
@@ -81,8 +81,10 @@ def _opened(path: Path) -> Iterator[Any]:
     """Open a sound file; raises ScoreError where it cannot be read."""
     import soundfile
 
+    from yehu_server.util.sound_file import opened_sound
+
     try:
-        with open_regular(path) as data, soundfile.SoundFile(data) as file:
+        with opened_sound(path) as file:
             yield file
     except OSError as error:
         raise ScoreError(f"{path}: cannot be read ({why(error).lower()})") from error

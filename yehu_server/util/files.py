@@ -220,6 +220,19 @@ def discard(file: io.FileIO, path: Path) -> None:
             path.unlink()
 
 
+def is_removed(file: io.FileIO, target: Path) -> bool:
+    """Whether an open file is no longer where it was made: removed, replaced or moved away."""
+    try:
+        there = target.stat()
+    except FileNotFoundError:
+        return True
+    except OSError:  # a folder that cannot be read now
+        return False
+    # Some file systems number files anew while they are open, so a link that is left counts too.
+    own = os.fstat(file.fileno())
+    return own.st_nlink == 0 and not os.path.samestat(own, there)
+
+
 def write_all(file: io.FileIO, data: bytes) -> None:
     """Write all data to an unbuffered file; where OSError is raised, some of it may be written."""
     rest = memoryview(data)

@@ -1,4 +1,4 @@
-"""Partial files."""
+"""Partial files, and locks between processes."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from yehu_server.util import files
 from yehu_server.util.checksummed import write_checksummed
 from yehu_server.util.files import LEFTOVER_AFTER_S, partial_beside, write_bytes
+from yehu_server.util.processes import machine_lock
 
 
 def aged(path, seconds):
@@ -40,3 +41,28 @@ def test_what_killed_writers_left_is_removed_at_the_next_start(tmp_path, monkeyp
     monkeypatch.undo()
     write(tmp_path / "b", b"b")
     assert sorted(tmp_path.iterdir()) == sorted([*kept, link, tmp_path / "b"])
+
+
+def test_a_lock_that_is_held_for_good_is_not_waited_for(tmp_path, caplog):
+    folder = tmp_path / "cache"
+    with machine_lock(folder, "page"):
+        with machine_lock(folder, "setup", within_s=0.0):
+            assert not caplog.text
+        with machine_lock(folder, "page", within_s=0.1):
+            assert "held for 0 s by another process" in caplog.text
+    caplog.clear()
+    with machine_lock(folder, "page", within_s=0.0):
+        assert not caplog.text
+
+
+def test_a_lock_that_cannot_be_made_keeps_nobody(tmp_path):
+    (tmp_path / "file").touch()
+    with machine_lock(tmp_path / "file", "page"):
+        pass
+    (tmp_path / "elsewhere").touch()
+    with machine_lock(tmp_path, "page"):
+        (lock,) = tmp_path.glob("page-*.lock")
+    lock.unlink()
+    lock.symlink_to(tmp_path / "elsewhere")  # whoever may write there cannot lead it away
+    with machine_lock(tmp_path, "page", within_s=0.0):
+        assert (tmp_path / "elsewhere").read_bytes() == b""

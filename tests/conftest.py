@@ -107,7 +107,7 @@ def once(request, tmp_path_factory) -> Callable[[str, Callable[[Path], Any]], An
 
         folder = shared / name
         result = folder / "result.pickle"
-        with machine_lock(f"-{name}"):
+        with machine_lock(shared, name):
             if not result.exists():
                 folder.mkdir(exist_ok=True)
                 result.write_bytes(pickle.dumps(make(folder)))

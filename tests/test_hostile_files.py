@@ -1,16 +1,19 @@
 """Any file that is given for one of ours gets one line of error, soon."""
 
+import contextlib
 import os
+import struct
 
 import pytest
 
 from yehu_lab.body import read as measure
+from yehu_lab.body.tap import Channel, read_recording
 from yehu_lab.sweeps.result import Result
 from yehu_server.cli import _parser
 from yehu_server.cli.config import read_config
 from yehu_server.core.physics.quantities import read_body, read_quantities
 from yehu_server.errors import YehuError
-from yehu_server.following.recording import recording_of_file
+from yehu_server.following.recording import downmix_of, recording_of_file
 from yehu_server.playing.mapping import load
 from yehu_server.playing.preset_folders import read_preset
 from yehu_server.playing.tuning import read_tuning
@@ -20,6 +23,7 @@ from yehu_server.scores.musicxml.reader import read_musicxml
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.simulation.run import Simulation
 from yehu_server.util.parsing import MAX_DEPTH, parse_json, parse_toml
+from yehu_server.util.sound_file import is_rendered
 
 SERVE = _parser().parse_args(["serve"]).command
 READERS = {
@@ -86,6 +90,42 @@ def test_what_never_ends_or_never_begins_is_refused_at_once(tmp_path, name):
             READERS[name](path)
         assert str(path) in str(error.value)
         assert len(str(error.value)) < 200 + len(str(path))
+
+
+def sound(of: str) -> bytes:
+    """A RIFF or RF64 file with sizes of up to 2^63 and a little sound."""
+    form = struct.pack("<IHHIIHH", 16, 1, 1, 44100, 88200, 2, 16)
+    if of == "RIFF":
+        sizes = b"RIFF" + struct.pack("<I", 2**32 - 1) + b"WAVE"
+    else:
+        large = struct.pack("<IQQQI", 28, 2**63 - 1, 2**63 - 1, 2**62, 0)
+        sizes = b"RF64" + struct.pack("<I", 2**32 - 1) + b"WAVEds64" + large
+    return sizes + b"fmt " + form + b"data" + struct.pack("<I", 2**32 - 1) + bytes(1000)
+
+
+@pytest.mark.parametrize("of", ["RIFF", "RF64"])
+def test_sizes_that_no_file_has_print_no_traceback(tmp_path, capfd, of):
+    path = tmp_path / "v.wav"
+    path.write_bytes(sound(of))
+    readers = (
+        recording_of_file,
+        lambda path: downmix_of(recording_of_file(path)),
+        lambda path: read_recording(path, [Channel("force")]),
+        is_rendered,
+    )
+    for read in readers:
+        with contextlib.suppress(YehuError):
+            read(path)
+    assert capfd.readouterr().err == ""
+
+
+def test_samples_without_a_header_are_no_sound(tmp_path):
+    path = tmp_path / "v.raw"  # of which soundfile would ask what it holds
+    path.write_bytes(bytes(1000))
+    for read in (recording_of_file, lambda path: read_recording(path, [])):
+        with pytest.raises(YehuError):
+            read(path)
+    assert not is_rendered(path)
 
 
 def nested(depth: int) -> str:

@@ -141,7 +141,8 @@ def dynamics(notes: list[Note], levels: list[tuple[int, int]]) -> Curve:
             if start <= tick < end:
                 level = low + (high - low) * step((tick - start) / (end - start))
         swells = (hill(note.place(tick)) for note in notes if note.length >= 2 * QUARTER)
-        return LOUDEST * (min(level + SWELL * sum(swells), 127.0) / 127.0) ** COMPRESSION
+        level = min(level + SWELL * sum(swells), 127.0)
+        return float(LOUDEST * (level / 127.0) ** COMPRESSION)
 
     return curve
 

@@ -224,16 +224,14 @@ def test_a_file_that_is_no_schedulers_is_refused(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_lock_keeps_processes_apart(tmp_path, monkeypatch):
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
-    monkeypatch.setattr("tempfile.tempdir", None)
+def test_a_lock_keeps_processes_apart(tmp_path):
     program = (
         "import sys; from pathlib import Path\n"
         "from yehu_server.util.processes import machine_lock\n"
         "Path(sys.argv[1], 'wants').touch()\n"
-        "with machine_lock(): Path(sys.argv[1], 'has').touch()"
+        "with machine_lock(Path(sys.argv[1]), 'a'): Path(sys.argv[1], 'has').touch()"
     )
-    with machine_lock():
+    with machine_lock(tmp_path, "a"):
         other = subprocess.Popen([sys.executable, "-c", program, str(tmp_path)])
         until((tmp_path / "wants").exists, within_s=LONG_S)
         time.sleep(0.2)

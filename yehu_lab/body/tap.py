@@ -15,14 +15,7 @@ import numpy as np
 
 from yehu_lab.body.curve import Floats
 from yehu_server.errors import MeasurementError
-from yehu_server.util.files import (
-    error_reason,
-    make_folder,
-    open_regular,
-    replace_any,
-    replace_none,
-    replacing,
-)
+from yehu_server.util.files import error_reason, make_folder, replace_any, replace_none, replacing
 
 # What a channel may be; all but the force are responses.
 QUANTITIES = ("force", "velocity", "acceleration", "displacement", "pressure")
@@ -227,8 +220,10 @@ def read_recording(path: Path, channels: Sequence[Channel] | None) -> list[Tap]:
     """
     import soundfile
 
+    from yehu_server.util.sound_file import opened_sound
+
     try:
-        with open_regular(path) as data, soundfile.SoundFile(data) as file:
+        with opened_sound(path) as file:
             rate = file.samplerate
             if not LOWEST_RATE <= rate <= HIGHEST_RATE or file.frames > LONGEST_FILE_S * rate:
                 raise MeasurementError(f"{path}: not a recording of taps: {rate} Hz, or too long")

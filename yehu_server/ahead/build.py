@@ -165,7 +165,7 @@ def page_module() -> Path:
         return found
     if page_linker() is None:
         raise YehuError("nothing is built for pages, and there is no wasm-ld; Debian's lld has it")
-    with machine_lock("-page"):  # who waits finds it then
+    with machine_lock(data_folder(), "page"):  # who waits finds it then
         if found := _found(folder):
             return found
         log.warning("compiling the instrument for pages; it takes a minute, once")

@@ -13,7 +13,7 @@ import numpy as np
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import MAX_DURATION_H, check_duration
-from yehu_server.util.files import error_reason, open_regular
+from yehu_server.util.files import error_reason
 from yehu_server.util.hints import require_package
 
 Array = Any
@@ -81,8 +81,10 @@ def _opened(path: Path) -> Iterator[Any]:
     """Open a sound file; raises ScoreError where it cannot be read."""
     import soundfile
 
+    from yehu_server.util.sound_file import opened_sound
+
     try:
-        with open_regular(path) as data, soundfile.SoundFile(data) as file:
+        with opened_sound(path) as file:
             yield file
     except OSError as error:
         raise ScoreError(f"{path}: cannot be read ({error_reason(error).lower()})") from error

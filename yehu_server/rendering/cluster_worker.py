@@ -71,13 +71,15 @@ def do(job: bytes, code: str) -> bytes:
     """
     import msgpack
 
+    from yehu_server.compile.cache_folder import data_folder
+
     if code != identity().code:
         return bytes(msgpack.packb((UNLIKE, who())))
     perform, task, setup = pickle.loads(job)  # noqa: S301 - workers do what their scheduler says
     try:
         with _turn:
             if setup not in _set_up:
-                with machine_lock():
+                with machine_lock(data_folder(), "setup"):
                     pickle.loads(setup)()  # noqa: S301
                 _set_up.add(setup)
             return bytes(msgpack.packb((DONE, perform(task, lambda _done, _total: None))))

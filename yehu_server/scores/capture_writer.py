@@ -17,7 +17,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.scores.capture_format import as_line
 from yehu_server.scores.capture_header import SessionStart, header_of, session_start_of
-from yehu_server.util.files import create, discard, error_reason, write_all
+from yehu_server.util.files import create, discard, error_reason, is_removed, write_all
 
 ROOM_BYTES = 1 << 16  # free space needed to begin a capture
 
@@ -30,7 +30,7 @@ class CaptureWriter:
     """
 
     def __init__(self, target: Path, *, beginning: SessionStart, overwrite: bool = False) -> None:
-        self._target = target
+        self.target = target
         self._file = create(target, overwrite=overwrite, room_bytes=ROOM_BYTES)
         self._whole_bytes = 0
         self._write([header_of(beginning)])
@@ -50,11 +50,14 @@ class CaptureWriter:
 
     def discard(self) -> None:
         """End the capture and remove its file."""
-        discard(self._file, self._target)
+        discard(self._file, self.target)
         self._file.close()
 
     def _write(self, lines: Iterable[Any]) -> None:
         data = "".join(json.dumps(line) + "\n" for line in lines).encode()
+        if is_removed(self._file, self.target):
+            self._file.close()
+            raise OutputError(f"{self.target}: was removed meanwhile")
         try:
             write_all(self._file, data)
             self._whole_bytes += len(data)
@@ -63,7 +66,7 @@ class CaptureWriter:
                 written = self._file.seek(0, io.SEEK_END) - self._whole_bytes
                 self._file.truncate(self._whole_bytes + data.rfind(b"\n", 0, written) + 1)
             self._file.close()
-            raise OutputError(f"{self._target}: cannot write: {error_reason(error)}") from error
+            raise OutputError(f"{self.target}: cannot write: {error_reason(error)}") from error
 
 
 class LiveCapture:
@@ -104,9 +107,10 @@ class LiveCapture:
             if is_last:
                 self._writer.close(self._ensemble.frame)
         except OutputError as error:
+            kept = "; what was written is kept" if self._writer.target.exists() else ""
             self._writer = None
             self.is_whole = False
-            self._on_message(f"capture ended: {error}; what was written is kept")
+            self._on_message(f"capture ended: {error}{kept}")
 
     def close(self) -> None:
         """Write the last commands, and end the capture after the last frame played."""

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import secrets
 from pathlib import Path
 
-from yehu_server.util.files import error_reason, read_bytes
+from yehu_server.util.files import error_reason, partial_beside, read_bytes
 
 MAX_BYTES = 64 * 2**20
 DIGEST_BYTES = 16
@@ -47,7 +46,7 @@ def write_checksummed(path: Path, payload: bytes) -> None:
     A power cut may leave it incomplete, which its checksum shows. Raises OSError where it cannot be
     written.
     """
-    partial = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    partial = partial_beside(path)
     try:
         partial.write_bytes(_digest(path, payload) + payload)
         partial.replace(path)

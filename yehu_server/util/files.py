@@ -10,7 +10,9 @@ import os
 import re
 import secrets
 import stat
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO
 
@@ -24,6 +26,8 @@ MAX_SETTINGS_BYTES = 2**20  # for files that are read while the instrument plays
 # Names that come over the network: no path, no hidden file.
 PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
 MAX_SHOWN = 40  # characters of other names in errors
+LEFTOVER = re.compile(r"\.yehu-server-[0-9a-f]{16}\.part")
+LEFTOVER_AFTER_S = 24 * 3600.0  # without a write; a process may be stopped for hours
 
 
 def open_at_once(path: str, flags: int) -> int:
@@ -189,7 +193,7 @@ def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.
     `room_bytes`: free space that the disk must have.
     """
     check_target(target)
-    path = _beside(target.resolve()) if overwrite else target
+    path = partial_beside(target.resolve()) if overwrite else target
     try:
         file = io.FileIO(path, "x")
         try:
@@ -216,6 +220,19 @@ def discard(file: io.FileIO, path: Path) -> None:
             path.unlink()
 
 
+def is_removed(file: io.FileIO, target: Path) -> bool:
+    """Whether an open file is no longer where it was made: removed, replaced or moved away."""
+    try:
+        there = target.stat()
+    except FileNotFoundError:
+        return True
+    except OSError:  # a folder that cannot be read now
+        return False
+    # Some file systems number files anew while they are open, so a link that is left counts too.
+    own = os.fstat(file.fileno())
+    return own.st_nlink == 0 and not os.path.samestat(own, there)
+
+
 def write_all(file: io.FileIO, data: bytes) -> None:
     """Write all data to an unbuffered file; where OSError is raised, some of it may be written."""
     rest = memoryview(data)
@@ -236,7 +253,7 @@ def replacing(target: Path, may_replace: Callable[[Path], bool] = replace_any) -
     """
     check_target(target)
     check_free(target, may_replace)
-    partial = _beside(target.resolve())
+    partial = partial_beside(target.resolve())
     try:
         partial.touch(exist_ok=False)
         yield partial
@@ -264,9 +281,29 @@ def _move(partial: Path, target: Path, may_replace: Callable[[Path], bool]) -> N
         raise
 
 
-def _beside(target: Path) -> Path:
-    """A hidden name in the same folder, on the same disk."""
+def partial_beside(target: Path) -> Path:
+    """A new hidden name in the same folder, on the same disk, for what is moved to `target`.
+
+    The first for a folder removes what this user's killed processes left there.
+    """
+    _remove_leftovers(target.parent)
     return target.parent / f".yehu-server-{secrets.token_hex(8)}.part"
+
+
+@lru_cache(maxsize=1024)
+def _remove_leftovers(folder: Path) -> None:
+    """Remove partial files that nobody has written to for a day."""
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            if LEFTOVER.fullmatch(entry.name) and _is_old(entry.stat(follow_symlinks=False)):
+                with contextlib.suppress(OSError):
+                    os.unlink(entry.path)  # noqa: PTH108 - of scandir
+
+
+def _is_old(status: os.stat_result) -> bool:
+    is_own = not hasattr(os, "getuid") or status.st_uid == os.getuid()
+    is_file = stat.S_ISREG(status.st_mode)
+    return is_own and is_file and time.time() - status.st_mtime > LEFTOVER_AFTER_S
 
 
 def write_bytes(target: Path, data: bytes, *, overwrite: bool = True) -> Path:

@@ -11,9 +11,9 @@ import contextlib
 import json
 import logging
 import os
+import platform
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -31,6 +31,8 @@ log = logging.getLogger(__name__)
 EXIT_S = 1.0  # for a process to end by itself
 PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
 F_SETPIPE_SZ = 1031  # of Linux
+LOCK_S = 300.0  # for a lock: longer than a slow machine compiles
+LOCK_EVERY_S = 0.05  # between two attempts
 
 
 def python_command(module: str, *arguments: str) -> list[str]:
@@ -253,22 +255,43 @@ class Supervisor:
 
 
 @contextlib.contextmanager
-def machine_lock(name: str = "") -> Iterator[None]:
-    """Hold a lock of this user on this machine, as long as a block lasts.
+def machine_lock(folder: Path, name: str, within_s: float = LOCK_S) -> Iterator[None]:
+    """Hold a lock of this machine in a folder of the user's, as long as a block lasts.
 
-    So one process compiles, and the others load what it stored.
+    So one process compiles, and the others load what it stored. Where the lock cannot be had within
+    a time, as when its holder is stopped, the block goes on without it.
     """
-    user = os.getuid() if hasattr(os, "getuid") else 0
-    path = Path(tempfile.gettempdir()) / f"yehu-server-{user}{name}.lock"
+    path = folder / f"{name}-{platform.node()}.lock"
     with contextlib.ExitStack() as stack:
         try:
             import fcntl
 
+            folder.mkdir(parents=True, exist_ok=True)
             flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
             file = os.open(path, flags, 0o600)
             stack.callback(os.close, file)
-            fcntl.flock(file, fcntl.LOCK_EX)
-            stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # also where a fork has the file
+            if _locked(file, within_s):
+                stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # also where a fork has the file
+            else:
+                log.warning(
+                    "%s: held for %.0f s by another process; not waited for", path, within_s
+                )
         except (ImportError, OSError):  # each compiles for itself then
             pass
         yield
+
+
+def _locked(file: int, within_s: float) -> bool:
+    """Lock an open file; whether it could be within a time."""
+    import fcntl
+
+    end = time.monotonic() + within_s
+    while True:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() >= end:
+                return False
+            time.sleep(LOCK_EVERY_S)
+        else:
+            return True

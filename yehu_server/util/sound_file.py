@@ -1,4 +1,7 @@
-"""Write sound files: renderings that appear when complete, recordings that are always valid."""
+"""Write sound files: renderings that appear when complete, recordings that are always valid.
+
+And open the ones that others made.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import contextlib
 import io
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import soundfile
@@ -151,12 +154,53 @@ def sound_file(
             raise OutputError(f"{target}: there is nothing to write")
 
 
+class _Source:
+    """A file for libsndfile, whose calls back may raise nothing: Python would print a traceback.
+
+    A hostile header asks for places of 2^63; the first error of the system is kept in `error`.
+    It has no name, by whose ending soundfile would take it for raw samples.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self.error: OSError | None = None
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        with contextlib.suppress(OSError, ValueError, OverflowError):  # no such place: it stays
+            self._file.seek(offset, whence)
+        return self.tell()
+
+    def tell(self) -> int:
+        return self._file.tell()
+
+    def readinto(self, buffer: memoryview) -> int:
+        try:
+            return self._file.readinto(buffer)  # type: ignore[attr-defined, no-any-return]
+        except OSError as error:
+            self.error = self.error or error
+            return 0
+
+
+@contextlib.contextmanager
+def opened_sound(path: Path) -> Iterator[soundfile.SoundFile]:
+    """Open a sound file to read, whatever its name and its bytes.
+
+    Raises OSError where it cannot be read, soundfile.LibsndfileError where it is no sound.
+    """
+    with open_regular(path) as data:
+        source = _Source(data)
+        with soundfile.SoundFile(source) as file:
+            yield file
+        if source.error is not None:
+            raise source.error
+
+
 def is_rendered(target: Path) -> bool:
     """Whether a file was made by `sound_file`, or is empty."""
     try:
         if target.stat().st_size == 0:
             return True
-        with open_regular(target) as data, soundfile.SoundFile(data) as file:  # of any name
+        with opened_sound(target) as file:
             return str(file.software).startswith(RENDERED)
     except (OSError, soundfile.LibsndfileError):
         return False

@@ -115,3 +115,26 @@ def test_a_disk_without_room_for_a_second_refuses_and_leaves_no_file(tape, tmp_p
         Recorder(tape, tmp_path / name, 0, pytest.fail, overwrite=True)
     assert (tmp_path / name).read_text() == "older"
     assert threading.active_count() == threads
+
+
+@pytest.mark.parametrize("change", ["removed", "replaced", "moved"])
+def test_a_recording_whose_file_is_removed_says_so_at_once(tape, tmp_path, monkeypatch, change):
+    monkeypatch.setattr(recordings, "EVERY_S", 0.001)
+    said: list[str] = []
+    target = tmp_path / "r.wav"
+    recording = Recorder(tape, target, 0, said.append)
+    tape.play(10_000)
+    until(recording, lambda: recording._position == 10_000)
+    if change == "moved":
+        target.rename(tmp_path / "other.wav")
+    else:
+        target.unlink()
+    if change == "replaced":
+        target.write_text("mine")
+    until(recording, lambda: not recording.is_running)
+    recording.stop()
+    (line,) = said
+    assert line.startswith(f"recording ended: {target}: was removed meanwhile")
+    assert not recording.is_whole
+    if change == "replaced":
+        assert target.read_text() == "mine"

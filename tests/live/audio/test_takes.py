@@ -107,6 +107,20 @@ def test_a_full_disk_keeps_take_and_capture_as_far_as_they_got(
     assert len(read_capture(capture).commands) > 0
 
 
+def test_a_take_or_a_capture_that_was_removed_is_no_whole_one(make_live, tmp_path, until):
+    for name in ("record", "capture"):
+        take = tmp_path / f"{name}.{'wav' if name == 'record' else 'jsonl'}"
+        live = make_live(**{name: take})
+        live.wait_frames(100)
+        take.unlink()
+        live.client().send("/note", 67, 90)
+        line = f"{take}: was removed meanwhile"
+        until(lambda: any(each.endswith(line) for each in live.said), "it to be said")  # noqa: B023
+        live.end()
+        assert not live.server.is_whole
+        assert not take.exists()
+
+
 def test_older_takes_are_refused_before_anything_else(make_live, tmp_path):
     for name in ("record", "capture"):
         older = tmp_path / f"{name}.wav"

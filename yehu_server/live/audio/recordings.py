@@ -14,7 +14,7 @@ import numpy as np
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.live import limits
-from yehu_server.util.files import create, discard, error_reason, path_inside
+from yehu_server.util.files import create, discard, error_reason, is_removed, path_inside
 from yehu_server.util.sound_file import SoundWriter, format_of
 from yehu_server.util.subtypes import DEFAULT_SUBTYPES, SUBTYPES
 from yehu_server.util.token_bucket import TokenBucket
@@ -91,6 +91,7 @@ class Recorder:
             ending = False
             while not ending:
                 ending = self._ending.wait(EVERY_S)
+                self._check_kept()
                 begin, samples = self._tape.taped(self._position)
                 if self._waits:
                     self._position = begin + len(samples)
@@ -104,8 +105,13 @@ class Recorder:
             self.failure = str(error)
         self._close()
         if self.failure:
-            kept = f"; {self.seconds:.1f} s are kept" if self.seconds else ""
+            is_kept = self.seconds and self.target.exists()
+            kept = f"; {self.seconds:.1f} s are kept" if is_kept else ""
             self._on_message(f"recording ended: {self.failure}{kept}")
+
+    def _check_kept(self) -> None:
+        if is_removed(self._file, self.target):
+            raise OutputError(f"{self.target}: was removed meanwhile")
 
     def _from_first_sound(self, samples: Any) -> Any:
         """The samples from a moment before the first sound on; none before."""

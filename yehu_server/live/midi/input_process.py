@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import mmap
 import os
+import sys
 import threading
 import time
 from collections.abc import Iterable, Sequence
@@ -19,7 +20,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
 from yehu_server.live.midi.jack_watch import JackWatch
 from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted
-from yehu_server.util.processes import Message, Parent
+from yehu_server.util.processes import SWITCH_INTERVAL_S, Message, Parent
 
 POLL_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # between searches for a MIDI system, where there is none
@@ -271,6 +272,8 @@ def _feed(order: Message) -> MidiFeed:
 
 def main() -> None:
     """Serve the parent process until it closes the pipe."""
+    # RtMidi's threads wait for others here, and JACK does not wait for them.
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
     parent = Parent()
     orders = parent.orders()
     order = next(orders)

@@ -39,12 +39,11 @@ from yehu_server.playing.parts import assemble, number_of_instruments, player_of
 from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.util.files import check_free, check_target, replace_any, replace_none
+from yehu_server.util.processes import SWITCH_INTERVAL_S
 
 log = logging.getLogger(__name__)
 Input = OscPorts | WebServer | Announcer | MidiPorts | Pages | VoiceInput
 FADE_MS = 50.0  # waited for after the notes' release
-# Python's threads take short turns, so that a busy one does not delay the others.
-SWITCH_INTERVAL_S = 0.0001
 
 
 class Server:

@@ -28,6 +28,8 @@ Message = dict[str, Any]
 
 log = logging.getLogger(__name__)
 
+# Python's threads take short turns, so that a busy one does not delay the others.
+SWITCH_INTERVAL_S = 0.0001
 EXIT_S = 1.0  # for a process to end by itself
 PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
 F_SETPIPE_SZ = 1031  # of Linux

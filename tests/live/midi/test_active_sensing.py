@@ -1,4 +1,4 @@
-"""MIDI active sensing: a controller that falls silent lets go of its notes."""
+"""Notes of a controller end that falls silent (active sensing), or is not heard for a while."""
 
 from __future__ import annotations
 
@@ -63,19 +63,38 @@ def controller(monkeypatch) -> Controller:
     return controller
 
 
-@pytest.mark.parametrize("slept_s", [0.4, 2.5, 3600.0])
-def test_a_controller_that_falls_silent_is_reported_once_but_not_because_we_slept(
-    controller, slept_s
-):
+def test_a_controller_that_falls_silent_is_reported_once(controller):
     controller.sense_for(200)
-    controller.now_ns += round(1e9 * slept_s)
-    controller.sense_for(300)
-    assert controller.posted == []
     controller.port.receive(([ACTIVE_SENSING], 0.0))
     controller.sense_for(300)
     assert controller.posted == []
     controller.sense_for(1000)
     assert controller.posted == ["disconnect", "silent"]
+
+
+@pytest.mark.parametrize("slept_s", [0.4, 2.5, 3600.0])
+def test_while_we_sleep_notes_end_once_as_their_ends_may_be_lost_but_nobody_falls_silent(
+    controller, slept_s
+):
+    controller.sense_for(200)
+    controller.now_ns += round(1e9 * slept_s)
+    controller.sense_for(300)
+    assert controller.posted == ["disconnect", "slept"]
+    controller.port.receive(([ACTIVE_SENSING], 0.0))
+    controller.sense_for(300)
+    assert controller.posted == ["disconnect", "slept"]
+
+
+def test_opening_a_port_is_no_sleep(controller):
+    def get_ports() -> list[str]:
+        controller.now_ns += 1000 * MS
+        return ["keystep"]
+
+    controller.inputs._finder = SimpleNamespace(get_ports=get_ports)
+    for _ in range(3):
+        controller.sense_for(100)
+        controller.inputs.poll()
+    assert controller.posted == []
 
 
 def test_clocks_and_system_exclusive_are_not_passed_on(controller):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.mailbox import LIVE_INTAKE, MIDI_INPUTS, SMALL_RING
+from yehu_server.core.engine.mailbox import BUDGET_PER_FRAME, MIDI_INPUTS, SMALL_RING
 from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
@@ -131,6 +131,6 @@ def test_threads_of_several_inputs_lose_nothing(shared):
     out = np.zeros(64, np.float32)
     while any(thread.is_alive() for thread in threads):
         instrument.process(out)
-    for _ in range(2 * count // LIVE_INTAKE):
+    for _ in range(1 + 2 * count // (BUDGET_PER_FRAME * len(out))):
         instrument.process(out)
     assert instrument.midi["messages"] == 2 * count

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import mmap
 import os
+import sys
 import threading
 import time
 from collections.abc import Iterable, Sequence
@@ -19,7 +20,7 @@ from yehu_server.errors import ParameterError
 from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
 from yehu_server.live.midi.jack_watch import JackWatch
 from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted
-from yehu_server.util.processes import Message, Parent
+from yehu_server.util.processes import SWITCH_INTERVAL_S, Message, Parent
 
 POLL_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # between searches for a MIDI system, where there is none
@@ -96,7 +97,7 @@ class Inputs:
         self._refused: dict[str, float] = {}  # when ports could not be opened, s
         self._sought: set[str] = set(self._patterns)  # those that no port has matched yet
         self._watch: JackWatch | None = None
-        self._sensed = time.monotonic()
+        self._awake_s = time.monotonic()
 
     @property
     def has_system(self) -> bool:
@@ -126,6 +127,7 @@ class Inputs:
             if name not in self._open and is_due and wanted:
                 self._add(name, full_name)
         self._report_missing(stable)
+        self._measure_pause()  # opening a port takes long, while others are heard
 
     def _report_missing(self, names: Iterable[str]) -> None:
         """Report patterns that no port matches, at the first poll."""
@@ -136,13 +138,22 @@ class Inputs:
         self._sought.clear()
 
     def sense(self) -> None:
-        """See `Input.sense`. After a stop of this process, waiting begins anew."""
-        before, self._sensed = self._sensed, time.monotonic()
+        """See `Input.sense`. After a stop of this process, whose messages are lost, notes end."""
+        pause_s = self._measure_pause()
+        if pause_s > SLEPT_S and self._open:
+            for name in list(self._open):
+                self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=False)
+            self._parent.send("slept", seconds=pause_s)
         for port in list(self._open.values()):
-            if self._sensed - before > SLEPT_S:
-                port.heard_s = self._sensed
-            else:
-                port.sense()
+            port.sense()
+
+    def _measure_pause(self) -> float:
+        """The time since the last call; after a long one, waiting for ports begins anew."""
+        before, self._awake_s = self._awake_s, time.monotonic()
+        if self._awake_s - before > SLEPT_S:
+            for port in list(self._open.values()):
+                port.heard_s = self._awake_s
+        return self._awake_s - before
 
     def forward(self, on: bool) -> None:
         """Send the parent each message from now on, or none; any thread may call."""
@@ -261,6 +272,8 @@ def _feed(order: Message) -> MidiFeed:
 
 def main() -> None:
     """Serve the parent process until it closes the pipe."""
+    # RtMidi's threads wait for others here, and JACK does not wait for them.
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
     parent = Parent()
     orders = parent.orders()
     order = next(orders)

@@ -125,6 +125,9 @@ class MidiPorts(Supervisor):
             self._on_message(f"MIDI: {event['port']} is gone; its notes are ended")
         elif kind == "silent":
             log.info("MIDI: %s fell silent (active sensing)", event["port"])
+        elif kind == "slept":
+            seconds = event["seconds"]
+            self._on_message(f"MIDI: inputs were not read for {seconds:.1f} s; notes are ended")
         elif kind == "missing":
             self._report_missing(event["pattern"], event["present"])
         elif kind == "refused":

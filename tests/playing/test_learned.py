@@ -121,7 +121,7 @@ def test_a_crash_while_it_is_written_leaves_the_file_as_it_was(tmp_path, monkeyp
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_what_two_servers_learn_at_the_same_time_is_kept(settings):
+def test_what_two_servers_learn_at_the_same_time_is_kept():
     targets = ("/playing/vibrato", "/playing/speed")
     process = os.fork()
     own = 0 if process == 0 else 1

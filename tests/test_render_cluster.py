@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Self
@@ -161,6 +162,7 @@ def test_an_answer_that_is_no_result_is_an_error_of_its_score(songs, rendered):
                     {**line, "duration_s": "\x1b[2J"},
                     {**line, "error": b"x"},
                     {"file": line["file"]},
+                    {**line, "peak": math.nan},
                 ]
                 job = event.job
                 yield replace(event, result=strange[job] if job < len(strange) else line)
@@ -169,4 +171,4 @@ def test_an_answer_that_is_no_result_is_an_error_of_its_score(songs, rendered):
     code, _, err = rendered(Strange)
     assert code == 1
     told = [line.partition(".mid: ")[2] for line in err.splitlines()]
-    assert told == ["a worker's answer is not a result"] * 5
+    assert told == ["a worker's answer is not a result"] * 6

@@ -197,6 +197,8 @@ def test_an_answer_that_is_no_sounds_is_refused_and_nothing_written(made, tmp_pa
         {"lines": [{**line, "labels": {"regime": []}}], "files": {}},
         {"lines": [line], "files": {"../away": b"x"}},
         {"lines": [line], "files": {line["file"]: "text"}},
+        {"lines": [line], "files": {}},
+        {"lines": [{**line, "more": "x" * 2**20}], "files": dict.fromkeys(part.names, b"x")},
     ):
         with contextlib.suppress(OutputError):
             making.received(part, told)

@@ -121,6 +121,20 @@ def test_a_crash_while_it_is_written_leaves_the_file_as_it_was(tmp_path, monkeyp
     assert list(tmp_path.iterdir()) == [file]
 
 
+def test_what_two_servers_learn_at_the_same_time_is_kept():
+    targets = ("/playing/vibrato", "/playing/speed")
+    process = os.fork()
+    own = 0 if process == 0 else 1
+    for number in range(10):
+        knob = LearnedSource(f"cc {20 + 20 * own + number}")
+        learn(load("keyboard", user_first=True), targets[own], knob, soft=False)
+    if process == 0:
+        os._exit(0)
+    os.waitpid(process, 0)
+    kept = load("mine/keyboard")
+    assert [movers(kept, target) for target in targets] == [["cc 29"], ["cc 49"]]
+
+
 # ---------------------------------------------------------------- what is given back
 
 TEXT = """name = "mine"

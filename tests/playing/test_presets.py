@@ -130,6 +130,16 @@ def test_a_file_is_whole_when_writing_fails(presets, monkeypatch, of, failing):
     assert (presets.own / "mine.toml").read_bytes() == before
 
 
+def test_a_new_file_is_whole_or_not_there_when_the_process_is_killed(presets):
+    presets.own.mkdir(parents=True)
+    if (process := os.fork()) == 0:
+        Path.replace = lambda *_: os._exit(0)
+        Path.unlink = lambda *_, **__: os._exit(0)
+        presets.save("mine", DEFAULTS)
+    os.waitpid(process, 0)
+    assert presets.all()[1] == []
+
+
 def test_no_name_leads_out_of_the_folder(subtests, presets, tmp_path):
     before = sorted(tmp_path.rglob("*"))
     for name in NAMES:

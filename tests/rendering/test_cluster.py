@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import some_jobs
@@ -19,6 +20,7 @@ from yehu_server.errors import YehuError
 from yehu_server.rendering import cluster as clusters
 from yehu_server.rendering import cluster_worker
 from yehu_server.rendering.cluster import Cluster, scheduler_address
+from yehu_server.rendering.plain_unpickling import ForeignError
 from yehu_server.util.processes import machine_lock
 
 pytestmark = needs_distributed
@@ -201,6 +203,14 @@ def test_without_dask_the_extra_is_named(monkeypatch):
         Cluster("127.0.0.1")
 
 
+def test_an_error_that_is_like_none_of_dask_is_reported():
+    for arguments in (("a", "b", "c"), ("a", "b", None), ()):
+        error = type("KilledWorker", (ForeignError,), {})(*arguments)
+        failed = SimpleNamespace(status="error", exception=lambda error=error: error)
+        event = Cluster._event(None, failed, 0, None)
+        assert event.died.startswith("ended by KilledWorker")
+
+
 def test_an_address_is_completed_or_refused():
     for text, address in (
         ("host", "tcp://host:8786"),
@@ -209,7 +219,16 @@ def test_an_address_is_completed_or_refused():
         ("tcp://[::1]:5", "tcp://[::1]:5"),
     ):
         assert scheduler_address(text) == address
-    for text in ("", "a b", "http://x", "host:0", "host:70000", "a:b:c", "tcp://"):
+    for text in (
+        "",
+        "a b",
+        "http://x",
+        "host:0",
+        "host:70000",
+        f"h:{'9' * 5000}",
+        "a:b:c",
+        "tcp://",
+    ):
         with pytest.raises(YehuError, match="is not the address of a scheduler"):
             scheduler_address(text)
 

@@ -207,6 +207,10 @@ def _checked(part: Part, returned: Any) -> tuple[list[Line], dict[str, bytes]]:
             if "error" not in line and not isinstance(line["labels"]["regime"], str):
                 raise TypeError  # noqa: TRY301 - as where entries are missing
         files = dict(returned["files"])
+        made = [line["number"] for line in lines if "error" not in line]
+        names = {name for number in made for name in names_of(part.description, number)}
+        if not all(name in files or (part.folder / name).is_file() for name in names):
+            raise ValueError  # noqa: TRY301
         if not files.keys() <= set(part.names) or any(type(x) is not bytes for x in files.values()):
             raise ValueError  # noqa: TRY301
     except (KeyError, TypeError, ValueError, RecursionError) as error:

@@ -142,6 +142,7 @@ def _line_of(task: Task, event: Event) -> Line:
         line = checked_line(event.result, file=name)
         if "error" not in line and not isinstance(line["duration_s"], float):
             raise TypeError  # noqa: TRY301 - as where it is missing
+        json.dumps(line, allow_nan=False)
     except (KeyError, TypeError, ValueError, RecursionError):
         return {"file": name, "error": "a worker's answer is not a result"}
     return line

@@ -21,10 +21,12 @@ from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, set
 from yehu_server.playing.mapping_writer import as_toml, edited
 from yehu_server.playing.sources import COARSE, FINE_ABOVE, OF_ONE_NOTE, RESERVED, STEPS, is_address
 from yehu_server.util.files import write_text
+from yehu_server.util.processes import machine_lock
 
 # How far a source has to move, 0 to 1: pedals and breath sensors are noisy at rest.
 DISTANCE = 1.0 / 16.0
 PRESSURES = {"aftertouch": sources.PRESSURE, "polytouch": sources.POLY_PRESSURE}
+LOCK = "-learned"  # another server may learn at the same time
 AT_REST = {sources.BEND: 0.5, sources.PRESSURE: 0.0, sources.POLY_PRESSURE: 0.0}
 
 
@@ -176,9 +178,11 @@ def learn(
     if bind.is_by_range:  # the bend range still sets its span
         bind = replace(bind, is_soft=False)
     path = own_file(mapping)
-    contents, text = _own_contents(mapping, path)
-    dropped = [own for own in contents.binds if _excludes(bind, own)]
-    return _save(mapping, path, edited(contents, text, dropped, [_replacing(bind, dropped)])), path
+    with machine_lock(LOCK):
+        contents, text = _own_contents(mapping, path)
+        dropped = [own for own in contents.binds if _excludes(bind, own)]
+        added = [_replacing(bind, dropped)]
+        return _save(mapping, path, edited(contents, text, dropped, added)), path
 
 
 def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
@@ -187,8 +191,11 @@ def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     Where none is learned, those that the user has written are removed. Returns the mapping without
     them, and how many were removed. Raises MappingError as `learn`.
     """
-    address = find(target).address
-    path = own_file(mapping)
+    with machine_lock(LOCK):
+        return _unlearned(mapping, find(target).address, own_file(mapping))
+
+
+def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int]:
     if not path.exists():
         return mapping, 0
     contents, text = _own_contents(mapping, path)

@@ -18,6 +18,7 @@ from typing import Any
 
 from yehu_server.errors import OutputError
 from yehu_server.util.files import (
+    MAX_LINE_BYTES,
     error_reason,
     make_folder,
     open_at_once,
@@ -41,13 +42,14 @@ def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
     """A line of a manifest that came from elsewhere.
 
     The entries `wanted` are known beforehand, such as ``file``. Raises ValueError, TypeError where
-    it is none: not of texts and numbers, about something else, an error without text.
+    it is none: not of texts and numbers, about something else, an error without text, too long.
     """
     if not isinstance(line, dict) or any(line.get(name) != known for name, known in wanted.items()):
         raise ValueError("a line about something else")
     if not isinstance(line.get("error", ""), str):
         raise TypeError("an error without text")
-    json.dumps(line)  # not of bytes
+    if len(json.dumps(line)) >= MAX_LINE_BYTES:  # nor of bytes
+        raise ValueError("a line that no manifest may have")
     return line
 
 

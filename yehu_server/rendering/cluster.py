@@ -29,7 +29,9 @@ from yehu_server.util.hints import require_package
 from yehu_server.util.values import line
 
 PORT = 8786  # Dask's own choice
-_ADDRESS = re.compile(r"(?:(tcp|tls|ucx|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+)(?::(\d+))?/?")
+_ADDRESS = re.compile(
+    r"(?:(tcp|tls|ucx|ws|wss)://)?(\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+)(?::([0-9]{1,5}))?/?"
+)
 CONNECT_S = 10.0
 CHECK_EVERY_S = 2.0  # at how many workers there are
 JOBS_PER_THREAD = 4  # in flight, so that no worker waits for the next
@@ -179,8 +181,10 @@ class Cluster:
                 return Event(job, 1.0, died=f"ended by {value}")
             return Event(job, 1.0, result=value)
         error = future.exception()
-        if type(error).__name__ == "KilledWorker" and len(error.args) == 3:
-            return Event(job, 1.0, died=f"killed on {error.args[2] + 1} workers")
+        known = getattr(error, "args", ())
+        is_killed = type(error).__name__ == "KilledWorker" and len(known) == 3
+        if is_killed and isinstance(known[2], int):
+            return Event(job, 1.0, died=f"killed on {known[2] + 1} workers")
         return Event(job, 1.0, died=f"ended by {type(error).__name__}: {error}")
 
     def _check(self) -> None:

@@ -266,19 +266,13 @@ def replacing(target: Path, may_replace: Callable[[Path], bool] = replace_any) -
 
 
 def _move(partial: Path, target: Path, may_replace: Callable[[Path], bool]) -> None:
-    """Move a file to its target without a race with other writers."""
+    """Move a file to its target, whole at each moment, without a race with other writers."""
     destination = target.resolve()
     try:
-        destination.touch(exist_ok=False)
-    except FileExistsError:
+        destination.hardlink_to(partial)  # only where nothing is there yet; `partial` goes next
+    except OSError:  # it is there, or the disk has no links
         check_free(target, may_replace)
         partial.replace(destination)
-        return
-    try:
-        partial.replace(destination)
-    except OSError:
-        destination.unlink(missing_ok=True)
-        raise
 
 
 def partial_beside(target: Path) -> Path:

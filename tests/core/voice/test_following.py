@@ -12,7 +12,7 @@ from yehu_server.core.engine.voice_callback import COMMAND_NUMBERS, follow_voice
 from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
 from yehu_server.core.player.parameter_indices import DYNAMICS
-from yehu_server.core.voice.note_detection import FOLLOWER
+from yehu_server.core.voice.note_detection import FOLLOWER, MAX_TRANSPOSE
 
 RATE = 48000.0
 BLOCK = 128
@@ -205,3 +205,13 @@ def test_a_correction_moves_what_is_played_to_the_tuning():
     assert off[1.0] < 1e-9  # though the voice is nearer to the next note at times
     assert off[0.5] == pytest.approx(0.285, abs=0.03)
     assert off[0.0] == pytest.approx(0.57, abs=0.05)
+
+
+def test_a_wild_transposition_is_bounded_and_comes_to_notes_in_range():
+    sound = sung(lambda t: np.full(len(t), 60.0), 0.3)
+    for transpose, correct in ((math.inf, 1.0), (-1e308, math.nan), (1e18, 1e308)):
+        voice = np.zeros(1, FOLLOWER)
+        voice_prepare.call(voice.ctypes.data, RATE, transpose, correct)
+        assert abs(voice["transpose"][0]) <= MAX_TRANSPOSE  # or a note has no end of octaves
+        [(_, pitch)] = followed(sound, transpose=transpose, correct=correct).of(BEGIN)
+        assert LOWEST_NOTE <= pitch <= HIGHEST_NOTE

@@ -45,6 +45,7 @@ FALL_DB, RISE_DB, SWELL_DB, PEAK_DB = 3.0, 5.0, 90.0 * HOP_S, 40.0 * HOP_S
 STEADY_CERTAINTY, STEADY_RISE_DB = 0.9, 12.0
 MIN_STROKE_HOPS = 12  # that a stroke lasts at least
 # -- pitch
+MAX_TRANSPOSE = 128.0  # semitones: a note is brought into range octave by octave
 FIRST_NOTE_SEMITONES = 6.0  # above the lowest, about: tunes tend to rise from their first note
 MIN_PITCH_STEP = 0.01  # semitones: pitches less apart are the same
 RETARGET_SEMITONES = 0.2  # by which another pitch of the tuning must be nearer to be the target
@@ -130,7 +131,10 @@ def prepare_follower(f: Any, rate: float, transpose: float, correct: float) -> N
     """Set up a record that is all 0 for a sound's rate (Hz); see its fields."""
     prepare_pitch_detector(f.detector, rate)
     f.lowest, f.highest, f.on_inner, f.on_outer = OF_YEHU
-    f.transpose, f.correct, f.target_pitch = transpose, correct, math.nan
+    f.transpose, f.target_pitch = transpose, math.nan
+    if not math.isnan(transpose):
+        f.transpose = min(max(transpose, -MAX_TRANSPOSE), MAX_TRANSPOSE)
+    f.correct = min(max(correct, 0.0), 1.0) if math.isfinite(correct) else 0.0
     for key in range(KEY_COUNT):
         f.tuning[key] = key
     f.noise_db, f.full_db = MIN_GATE_DB, MIN_FULL_DB

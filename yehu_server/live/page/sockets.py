@@ -25,7 +25,7 @@ from yehu_server.core.player.commands import EXPRESS, HOLD, KINDS, RAMP, WRITE
 from yehu_server.live import limits
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
-from yehu_server.live.web.frames import TEXT, frame_of, write
+from yehu_server.live.web.frames import TEXT, frame_of, messages, write
 from yehu_server.params.table import TABLE
 from yehu_server.util.token_bucket import TokenBucket
 
@@ -94,7 +94,7 @@ class PageSockets:
         self._has_pages.set()
         try:
             self._send_status(page)
-            async for message in socket:
+            async for message in messages(socket):
                 if message.type is WSMsgType.BINARY:
                     commands = read_commands(message.data)
                 elif message.type is WSMsgType.TEXT and self._set_wanted(page, message.data):
@@ -124,7 +124,7 @@ class PageSockets:
         self._listeners[socket] = request.transport
         self._has_listeners.set()
         try:
-            async for _ in socket:  # only its end matters
+            async for _ in messages(socket):  # only its end matters
                 pass
         finally:
             self._listeners.pop(socket, None)
@@ -271,7 +271,11 @@ async def every(period_s: float, is_wanted: asyncio.Event) -> AsyncIterator[None
 
 async def _open(request: web.Request) -> web.WebSocketResponse:
     socket = web.WebSocketResponse(
-        timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=MESSAGE_BYTES + 1, compress=False
+        timeout=CLOSING_S,
+        heartbeat=HEARTBEAT_S,
+        autoping=False,
+        max_msg_size=MESSAGE_BYTES + 1,
+        compress=False,
     )
     await socket.prepare(request)
     return socket

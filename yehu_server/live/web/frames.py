@@ -1,9 +1,12 @@
-"""Messages of WebSockets, written at once: no other client waits for one that does not read."""
+"""Messages of WebSockets: no other client waits for one that does not read, or that sends much."""
 
 from __future__ import annotations
 
 import asyncio
 import struct
+from collections.abc import AsyncIterator
+
+from aiohttp import WSMessage, WSMsgType, web
 
 TEXT, BINARY = 0x81, 0x82  # whole messages
 SHORT, MIDDLE = 126, 1 << 16  # payloads below have lengths of one and of two bytes
@@ -29,3 +32,16 @@ def write(transport: asyncio.WriteTransport | None, frame: bytes, most_unsent: i
         return False
     transport.write(frame)
     return True
+
+
+async def messages(socket: web.WebSocketResponse) -> AsyncIterator[WSMessage]:
+    """Yield the messages of a WebSocket, made without `autoping`; after each, others have a turn.
+
+    aiohttp hands out all that has come without a pause, and answers pings likewise.
+    """
+    async for message in socket:
+        if message.type is WSMsgType.PING:
+            await socket.pong(message.data)
+        elif message.type is not WSMsgType.PONG:
+            yield message
+        await asyncio.sleep(0.0)

@@ -15,7 +15,7 @@ from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.peers import Peer, WebTraffic
 from yehu_server.live.osc.receiving import OscPorts
-from yehu_server.live.web.frames import TEXT, frame_of, write
+from yehu_server.live.web.frames import TEXT, frame_of, messages, write
 from yehu_server.params.table import PREFIX
 
 HEARTBEAT_S = 20.0  # a socket that does not answer within half of this is closed
@@ -97,7 +97,11 @@ class WebSockets:
     async def serve(self, request: web.Request) -> web.WebSocketResponse:
         """Serve one client until either end closes the connection."""
         socket = web.WebSocketResponse(
-            timeout=CLOSING_S, heartbeat=HEARTBEAT_S, max_msg_size=limits.WEB_FRAME, compress=False
+            timeout=CLOSING_S,
+            heartbeat=HEARTBEAT_S,
+            autoping=False,
+            max_msg_size=limits.WEB_FRAME,
+            compress=False,
         )
         await socket.prepare(request)
         if request.transport is None:  # it has gone already
@@ -107,7 +111,7 @@ class WebSockets:
         self._open[socket] = peer
         self._traffic.web_sockets += 1
         try:
-            async for frame in socket:
+            async for frame in messages(socket):
                 # The sender waits while its packets wait; nothing is lost.
                 while self._osc.is_behind(peer):  # noqa: ASYNC110 - the OSC thread has no event
                     await asyncio.sleep(BEHIND_S)

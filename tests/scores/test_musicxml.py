@@ -346,6 +346,8 @@ def test_the_container_of_an_archive_names_its_score_without_one_it_is_the_only_
         data = packed({**container, name: score(FOUR)})
         assert len(read(data, "tune.mxl").parts[0].notes) == 4
     assert len(read(packed({"x.xml": score(FOUR)}), "tune.mxl").parts[0].notes) == 4
+    for more in ({"__MACOSX/._s.xml": "\0\5\x16\7"}, {"META-INF/container.xml": "<container><"}):
+        assert len(read(packed({**more, "s.xml": score(FOUR)}), "tune.mxl").parts[0].notes) == 4
 
 
 def test_an_archive_that_is_damaged_or_made_to_harm_is_refused(subtests, read):
@@ -380,7 +382,7 @@ def test_a_file_that_is_no_score_is_refused_in_one_line(subtests, read, monkeypa
         ("<a>" * (DEEPEST + 1), "deeper"),
         ("<score-partwise>" + "<a/>" * 1000 + "</score-partwise>", "elements"),
         (score(attributes() + note("G4", 1e6)), "longer"),
-        ('<?xml version="1.0" encoding="ebcdic-moon"?><x/>', "no XML"),
+        ('<?xml version="1.0" encoding="ebcdic-moon"?><x/>', "ebcdic-moon"),
     ]:
         with subtests.test(text[:40], reason=reason):
             with pytest.raises(ScoreError, match=reason) as refusal:

@@ -18,6 +18,7 @@ from yehu_server.scores.abc.fields import metre_of, order_of_parts
 from yehu_server.scores.abc.keys import properties_of
 from yehu_server.scores.abc.vocabulary import DIRECTIVES, FIELDS, LEFT_OUT, SHORTCUTS
 from yehu_server.scores.abc.voice import SPREADS, VoiceReader
+from yehu_server.scores.encodings import decoded, encoding_of
 from yehu_server.scores.score import naming, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_PARTS, Written
@@ -50,10 +51,7 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
 
 
 def _decoded(data: bytes) -> str:
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
+    text = decoded(data, encoding_of(data))
     # Spaces of other kinds are spaces, and what cannot be shown is none of the music.
     return "".join(sign if sign.isprintable() or sign in "\t\r\n" else " " for sign in text)
 
@@ -188,7 +186,7 @@ class _Tune:
                 self._reader().spread = value
             else:
                 self._spread = value
-        elif name and re.sub(r"(?<=[a-z])-?\d+$", "", name.lower()) not in DIRECTIVES:
+        elif name[:1].isalpha() and re.sub(r"-?\d+$", "", name.lower()) not in DIRECTIVES:
             self._unknown[one_line(f"%%{name}"[:40])] += 1
 
     def _take_voice(self, text: str) -> None:

@@ -30,7 +30,7 @@ TOKEN = re.compile(
 |(?P<bar>\.?(?::*\[?\|[|\]]*:*|::+))(?P<number>[1-9][\d,\-]*)?
 |(?P<ending>\[[1-9][\d,\-]*)
 |(?P<text>"[^"]*")
-|(?P<sign>![^!|\n]+!|\+[^+|\s]+\+)
+|(?P<sign>![^!|\s]+!|\+[^+|\s]+\+)
 |(?P<chord>\[[^\]|]*\])(?P<chord_length>{LENGTH})(?P<chord_tie>-?)
 |(?P<grace>\{{[^}}]*\}})
 |(?P<note>{NOTE})

@@ -13,6 +13,7 @@ import mido
 import pytest
 
 from yehu_server.errors import ScoreError
+from yehu_server.scores.abc import vocabulary
 from yehu_server.scores.abc.reader import read_abc
 
 ABC2MIDI = shutil.which("abc2midi")
@@ -37,6 +38,12 @@ TYPED = [
     ("C", "[CEG]4 [DF]4|"), ("C", "[C2E2]G2|"), ("C", "(CDEF) (GABc)|"),
     ("C", "[K:G]F4[K:C]F4|"), ("C", "[L:1/4]C D [L:1/16]C4 D4|"), ("C", "[M:3/4]C2D2E2|"),
     ("C", "C D E F\\\nG A B c|"), ("C", "CDEF % comment\nGABc|"), ("C", "CD`EF GA`Bc|"),
+]  # fmt: skip
+# One by one: abc2midi keeps the octave of one tune for the next.
+CLEFS = [
+    ("C clef=treble-8", "c4 [K:G]f4|"), ("C", "C2 [K:clef=treble+8]C2 [K:clef=treble]C4|"),
+    ("C clef=G2-8", "c8|"), ("C clef=bass middle=d", "C8|"), ("C octave=-1", "c4 [K:F]B4|"),
+    ("C transpose=-2", "c4 [K:G]f4|"), ("C clef=treble-8 octave=0", "c4 [K:F]b4|"),
 ]  # fmt: skip
 
 
@@ -132,6 +139,9 @@ def test_tunes_are_those_of_abc2midi(subtests, read, tmp_path, everything):
         with subtests.test(name):
             (tmp_path / name).mkdir()
             assert not differences(tunes, read, tmp_path / name)
+    with subtests.test("clefs"):
+        tunes = [HEAD.format(key) + music for key, music in CLEFS]
+        assert not [each for tune in tunes for each in differences([tune], read, tmp_path)]
 
 
 def test_marks_voices_parts_and_jumps_are_understood(read):
@@ -163,6 +173,98 @@ def test_a_key_may_name_accidentals(read):
     ):
         notes = read(f"X:1\nL:1/4\nK:{key}\nFBc|").parts[0].notes
         assert [note.pitch for note in notes] == pitches, key
+
+
+def test_keys_are_read_or_told(read):
+    wrong = []
+    for key, do, told in (
+        ("Bflat", "Bb", ""), ("B flat major", "Bb", ""), ("B♭", "Bb", ""), ("F♯m", "A", ""),
+        ("gm", "Bb", ""), ("bbm", "Db", ""), ("Bblyd", "F", ""), ("Eb Dor", "Db", ""),
+        ("G blues", "G", "blues"), ("Bblues", "B", "blues"), ("g", "C", "K:g"), ("H", "C", "K:H"),
+        ("sol", "C", "K:sol"), ("D strange=1", "D", "strange=1"), ("C clef=odd", "C", "clef=odd"),
+    ):  # fmt: skip
+        written = read(f"X:1\nL:1/4\nK:{key}\nCDEF|")
+        ours = written.keys[0].do, " ".join(written.not_understood)
+        if ours[0] != do or told not in ours[1] or bool(told) != bool(ours[1]):
+            wrong.append((key, *ours))
+    assert not wrong
+
+
+def test_voices_sound_where_their_fields_say(read):
+    wrong = []
+    for tune, pitches in (
+        ("V:1 clef=treble-8\nK:C\nV:1\nc4|", [[60]]),
+        ("V:1 transpose=-2\nK:C\nV:1\nc4|", [[70]]),
+        ("K:C\nV:1 octave=-1\nc|\nV:2 clef=treble-8\nc|\nV:3 transpose=-2\nc|", [[60], [60], [70]]),
+        ("K:C clef=treble-8\nV:1\nc|\nV:2\nc|", [[60], [60]]),
+        ("V:1 clef=treble-8\nK:C octave=1\nV:1\nc|\nV:2\nc|", [[72], [84]]),
+        ('V:A\nV:B name="Low" clef=bass-8\nK:C\nV:B\nc|\nV:A\nc|', [[72], [60]]),
+        ("K:C\n[V:1 octave=-1]c|[V:1]c|[V:1 octave=0]c|", [[60, 60, 72]]),
+        ("K:C clef=treble-8\nc4|[K:G]c4|\nK:D\nd4|", [[60, 60, 62]]),
+        ("K:C\nc4|[K:clef=treble-8]c4|[K:clef=treble]c4|", [[72, 60, 72]]),
+        ("K:C treble_8\nc|", [[60]]),
+        ('K:C clef="treble+15"\nC|', [[84]]),
+        ("V:1\nK:D\nV:2\nK:C\nf|\nV:1\nf|", [[78], [77]]),
+    ):
+        found = [[note.pitch for note in part.notes] for part in read(f"X:1\nL:1/4\n{tune}").parts]
+        if found != pitches:
+            wrong.append((tune, pitches, found))
+    assert not wrong
+    written = read("X:1\nL:1/4\nK:D transpose=-2\nd|\nV:1 loud\n")
+    assert [key.do for key in written.keys] == ["C"]  # which sounds
+    assert written.not_understood == ["not understood: loud in V:"]
+
+
+def test_text_between_directives_is_no_music(read):
+    for kind in ("text", "ps", "svg", "ml"):
+        text = f"X:1\nL:1/4\nK:C\nc|\n%%begin{kind}\na bad egg\n\nX:2\n%%end{kind}\nd|\n"
+        assert [note.pitch for note in read(text).parts[0].notes] == [72.0, 74.0], kind
+    written = read("X:1\nL:1/4\nK:C\nc|\n%%begintext\nd|\n")  # without an end
+    assert written.not_understood == ["not understood: %%begintext"]
+
+
+def test_accidentals_reach_as_far_as_a_directive_says(read):
+    music = "K:C\n{}^c c c' c-|c _B-B =c|"
+    for directive, pitches in (
+        ("", [73, 73, 85, 73, 70, 72]),
+        ("%%propagate-accidentals octave", [73, 73, 84, 73, 70, 72]),
+        ("%%propagate-accidentals not", [73, 72, 84, 72, 70, 72]),
+        ("I:propagate-accidentals not", [73, 72, 84, 72, 70, 72]),
+        ("[I:propagate-accidentals octave]", [73, 73, 84, 73, 70, 72]),
+    ):
+        in_head = [] if directive.startswith("[") else [f"{directive}\n{music.format('')}".lstrip()]
+        for text in (*in_head, music.format(f"{directive}\n".lstrip())):
+            notes = read(f"X:1\nL:1/4\n{text}").parts[0].notes
+            assert [note.pitch for note in notes] == pitches, text
+
+
+def test_fields_and_directives_are_played_silent_or_told(read):
+    silent = "A:x\nR:reel\n%%MIDI program 40\n%%titlefont Times 12\nI:linebreak $\n%%setfont-1 x\n"
+    assert not read(f"X:1\n{silent}K:C\nCD|\nw: la la\n").not_understood
+    told = "%%MIDI transpose 2\n%%strange\nI:odd\nm:~n3=n\nY:1\n"
+    written = read(f"X:1\n{told}K:C\nCD|\ns: !p! *\n")
+    assert written.unknown == dict.fromkeys(
+        ["%%MIDI transpose", "%%strange", "%%odd", "macros (m:)", "Y:", "lines of symbols (s:)"], 1
+    )
+
+
+def test_the_documentation_lists_fields_properties_and_directives():
+    page = (Path(__file__).parents[2] / "docs/scores.md").read_text(encoding="utf-8")
+    for kind in (vocabulary.PLAYED, vocabulary.SILENT, vocabulary.LEFT_OUT):
+        for table, sign in ((vocabulary.FIELDS, ":"), (vocabulary.PROPERTIES, "=")):
+            names = " ".join(f"`{name}{sign}`" for name, its in table.items() if its == kind)
+            assert f"| {names} |" in page or not names, kind
+    shown = " ".join(page.split())
+    silent = [name for name, kind in vocabulary.DIRECTIVES.items() if kind == vocabulary.SILENT]
+    of_midi = [name for name in silent if name.startswith("midi ")]
+    assert f"``` {' '.join(name for name in silent if name not in of_midi)} ```" in shown
+    assert f"``` {' '.join(name.removeprefix('midi ') for name in of_midi)} ```" in shown
+
+
+def test_a_repeat_without_a_beginning_goes_back_to_a_double_bar(read):
+    for sign in ("||", "|]", "[|"):
+        notes = read(f"X:1\nL:1/1\nK:C\nC|D{sign}E|F:|G|").parts[0].notes
+        assert [note.pitch for note in notes] == [60, 62, 64, 65, 64, 65, 67], sign
 
 
 def test_a_file_of_several_tunes_gives_the_one_that_is_asked_for(tmp_path):

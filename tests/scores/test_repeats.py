@@ -11,11 +11,13 @@ from yehu_server.scores.written.repeats import BarLines, left_out, order_of
 
 
 def bar(signs: str = "") -> BarLines:
-    """A bar: `|:`, `:|`, and words such as `1` or `1,2` (ending), `+1` (goes on), `fine`."""
+    """A bar: `|:`, `:|`, `||`, and words such as `1` or `1,2` (ending), `+1` (goes on), `fine`."""
     lines = BarLines()
     for word in signs.split():
         if word == "|:":
             lines.forward = True
+        elif word == "||":
+            lines.double = True
         elif word.startswith(":|"):
             lines.times = int(word[2:] or 2)
         elif word.lstrip("+")[0].isdigit():
@@ -30,6 +32,9 @@ def bar(signs: str = "") -> BarLines:
 # Signs of bars, and their numbers as they are played: forms that no property below makes.
 FORMS = {
     ("", ":|", ":|"): "1 2 1 2 3 3",
+    ("", "|| :|", ""): "1 2 2 3",
+    ("", "|:", "|| :|"): "1 2 3 2 3",  # it has a beginning
+    ("", "||", "1 :|", "2"): "1 2 3 2 4",
     ("", "1,2 :|", "3", ""): "1 2 1 2 1 3 4",
     ("", "1 :|", ""): "1 2 1 3",
     ("", "1,3 :|", "2 :|", ""): "1 2 1 3 1 2 4",
@@ -169,6 +174,7 @@ def test_any_form_is_unrolled_as_it_was_made_and_no_bar_is_lost(form):
             st.frozensets(st.integers(1, 3), max_size=2),
             st.booleans(),
             st.sets(st.sampled_from(["dacapo", "dalsegno", "fine", "segno"]), max_size=1),
+            st.booleans(),
         ),
         max_size=12,
     )

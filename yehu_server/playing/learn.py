@@ -178,7 +178,7 @@ def learn(
     if bind.is_by_range:  # the bend range still sets its span
         bind = replace(bind, is_soft=False)
     path = own_file(mapping)
-    with machine_lock(LOCK):
+    with machine_lock(own_file(mapping).parent, LOCK):
         contents, text = _own_contents(mapping, path)
         dropped = [own for own in contents.binds if _excludes(bind, own)]
         added = [_replacing(bind, dropped)]
@@ -191,7 +191,7 @@ def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     Where none is learned, those that the user has written are removed. Returns the mapping without
     them, and how many were removed. Raises MappingError as `learn`.
     """
-    with machine_lock(LOCK):
+    with machine_lock(own_file(mapping).parent, LOCK):
         return _unlearned(mapping, find(target).address, own_file(mapping))
 
 

@@ -97,8 +97,8 @@ def _track(messages: list[tuple[int, mido.Message]]) -> mido.MidiTrack:
 
 
 def _title(name: str) -> mido.MetaMessage:
-    plain = name.encode("latin-1", "replace").decode("latin-1")
-    return mido.MetaMessage("track_name", name=plain)
+    encoded = name.encode().decode("latin-1")  # by which mido writes it, so that it is UTF-8
+    return mido.MetaMessage("track_name", name=encoded)
 
 
 def _conductor(written: Written, clock: WrittenClock) -> list[tuple[int, mido.MetaMessage]]:

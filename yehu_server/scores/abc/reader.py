@@ -8,14 +8,17 @@ from __future__ import annotations
 import os
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
-from yehu_server.errors import ScoreError
-from yehu_server.scores.abc.fields import SHORTCUTS, metre_of, order_of_parts
-from yehu_server.scores.abc.voice import VoiceReader
+from yehu_server.errors import ScoreError, one_line
+from yehu_server.scores.abc.fields import metre_of, order_of_parts
+from yehu_server.scores.abc.keys import properties_of
+from yehu_server.scores.abc.vocabulary import DIRECTIVES, FIELDS, LEFT_OUT, SHORTCUTS
+from yehu_server.scores.abc.voice import SPREADS, VoiceReader
+from yehu_server.scores.encodings import decoded, encoding_of
 from yehu_server.scores.score import errors_name, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_PARTS, Written
@@ -23,7 +26,8 @@ from yehu_server.scores.written.notated import MAX_PARTS, Written
 MAX_BYTES = 4 << 20
 MUSIC_FIELDS = "KLMQ"
 _FIELD = re.compile(r"([A-Za-z+]):(?![|:])\s*(.*)")  # C:| is a note at the end of a repeat
-_NAME = re.compile(r'(?:name|nm)="([^"]*)"')
+_BLOCK = re.compile(r"%%\s*(begin|end)([a-z]\w*)")
+NAMES = {"m": "macros (m:)", "s": "lines of symbols (s:)"}  # of fields that are left out
 
 
 def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
@@ -47,10 +51,7 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
 
 
 def _decoded(data: bytes) -> str:
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
+    text = decoded(data, encoding_of(data))
     # Spaces of other kinds are spaces, and what cannot be shown is none of the music.
     return "".join(sign if sign.isprintable() or sign in "\t\r\n" else " " for sign in text)
 
@@ -60,7 +61,7 @@ def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
     head: list[str] = []
     tunes: list[list[str]] = []
     is_open = False
-    for line in text.splitlines():
+    for line in _without_blocks(text.splitlines()):
         if re.match(r"X:", line):
             tunes.append([])
             is_open = True
@@ -68,9 +69,27 @@ def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
             is_open = False
         if is_open:
             tunes[-1].append(line)
-        elif not tunes and _FIELD.match(line):
-            head.append(line)
+        elif not tunes and ((found := _FIELD.match(line)) or line.startswith("%%")):
+            head += [line] if found is None or found[1] in FIELDS else []  # it may be any text
     return head, tunes
+
+
+def _without_blocks(lines: Sequence[str]) -> Iterator[str]:
+    """The lines but for text, PostScript or SVG from `%%begin` to its `%%end` (11.4.5).
+
+    One without an end is left as it is: its directive is told as not understood.
+    """
+    marks = [_BLOCK.match(line) for line in lines]
+    last = {found[2]: at for at, found in enumerate(marks) if found and found[1] == "end"}
+    inside = ""
+    for at, (line, found) in enumerate(zip(lines, marks, strict=True)):
+        if inside:
+            if found and found[1] == "end" and found[2] == inside:
+                inside = ""
+        elif found and found[1] == "begin" and last.get(found[2], -1) > at:
+            inside = found[2]
+        else:
+            yield line
 
 
 class _Tune:
@@ -80,6 +99,9 @@ class _Tune:
         self._voices: dict[str, VoiceReader] = {}
         self._names: dict[str, str] = {}
         self._defaults: list[tuple[str, str]] = []  # fields of the head
+        # What fields of voices say of where notes sound, in the order in which they are named.
+        self._properties: dict[str, dict[str, int]] = {}
+        self._spread = SPREADS[0]
         self._order = ""
         self._labels: list[tuple[str, int]] = []
         self._title = ""
@@ -89,6 +111,8 @@ class _Tune:
 
     def read(self, lines: Sequence[str]) -> Written:
         for written in lines:
+            if written.startswith("%%"):
+                self._directive(written[2:])
             line = re.sub(r"(?<!\\)%.*", "", written).rstrip()
             if not line.strip():
                 continue
@@ -100,9 +124,9 @@ class _Tune:
         for voice in self._voices.values():
             voice.end()
         parts = [
-            (self._names.get(name, ""), voice.bars)
-            for name, voice in self._voices.items()
-            if voice.bars
+            (self._names.get(name, ""), self._voices[name].bars)
+            for name in self._properties
+            if name in self._voices and self._voices[name].bars
         ]
         if not parts:
             raise ScoreError("has no notes of ABC")
@@ -117,6 +141,7 @@ class _Tune:
             if len(self._voices) >= MAX_PARTS:
                 raise ScoreError(f"has more than {MAX_PARTS} voices")
             voice = VoiceReader(self._unknown, self._warnings, self._shortcuts)
+            voice.spread = self._spread
             metre = next((metre_of(text) for key, text in self._defaults[::-1] if key == "M"), None)
             if metre is not None and metre < 3:
                 voice.unit = Fraction(1, 4)
@@ -124,6 +149,7 @@ class _Tune:
                 for letter, text in self._defaults:
                     if letter == key and (key != "Q" or not self._voices):
                         voice.field(letter, text)
+            voice.set_properties(self._properties.setdefault(name, {}))
             self._voices[name] = voice
         self._now = self._voices[name]
         return self._now
@@ -136,6 +162,8 @@ class _Tune:
         elif letter == "U":
             sign, _, name = text.partition("=")
             self._shortcuts[sign.strip()[:1]] = name.strip().strip("!+")
+        elif letter == "I":
+            self._directive(text)
         elif letter == "V":
             self._take_voice(text)
         elif letter == "P":
@@ -145,18 +173,33 @@ class _Tune:
         elif letter in MUSIC_FIELDS:
             self._defaults.append((letter, text))
             self._in_music = letter == "K" or self._in_music
-        elif letter == "s":
-            self._unknown["lines of symbols (s:)"] += 1
-        elif letter == "m":
-            self._unknown["macros (m:)"] += 1
+        elif FIELDS.get(letter, LEFT_OUT) == LEFT_OUT:
+            self._unknown[NAMES.get(letter, f"{letter}:")] += 1
+
+    def _directive(self, text: str) -> None:
+        """Take a directive (11), of a line of its own or of an I: field."""
+        name, value = [*text.strip().split(maxsplit=1), "", ""][:2]
+        if name.lower() == "midi":
+            name = f"MIDI {value.partition(' ')[0]}"
+        if name == "propagate-accidentals" and value in SPREADS:
+            if self._in_music:
+                self._reader().spread = value
+            else:
+                self._spread = value
+        elif name[:1].isalpha() and re.sub(r"-?\d+$", "", name.lower()) not in DIRECTIVES:
+            self._unknown[one_line(f"%%{name}"[:40])] += 1
 
     def _take_voice(self, text: str) -> None:
-        name = text.split(maxsplit=1)[0] if text.split() else "1"
-        called = _NAME.search(text)
+        name, rest = [*text.split(maxsplit=1), "1", ""][:2] if text else ("1", "")
+        found, called, others = properties_of(rest, self._unknown)
         if called:
-            self._names[name] = "".join(filter(str.isprintable, called[1]))[:80]
+            self._names[name] = called
+        for word in others:
+            self._unknown[one_line(f"{word} in V:"[:40])] += 1
         if self._in_music:
-            self._voice(name)
+            self._voice(name).set_properties(found)
+        else:
+            self._properties.setdefault(name, {}).update(found)
 
     def _inline(self, letter: str, text: str) -> VoiceReader:
         self._field(letter, text.strip())

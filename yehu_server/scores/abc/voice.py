@@ -9,7 +9,9 @@ from fractions import Fraction
 
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores.abc import fields
-from yehu_server.scores.abc.fields import ALTERS, DECORATIONS, JUMPS, WEDGES
+from yehu_server.scores.abc.keys import ALTERS, key_of, properties_of
+from yehu_server.scores.abc.vocabulary import DECORATIONS, IGNORED, JUMPS, WEDGES
+from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
 from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
@@ -17,6 +19,7 @@ from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
 MIDDLE_C = 60.0
+SPREADS = ("pitch", "octave", "not")  # how far an accidental reaches in its bar (11.3)
 TIMES = {2: 3, 3: 2, 4: 3, 6: 2, 8: 3}  # of tuplets; others depend on the metre
 LONGEST = 64  # quarters of a note
 MAX_BARS_REST = 1000
@@ -27,7 +30,7 @@ TOKEN = re.compile(
 |(?P<bar>\.?(?::*\[?\|[|\]]*:*|::+))(?P<number>[1-9][\d,\-]*)?
 |(?P<ending>\[[1-9][\d,\-]*)
 |(?P<text>"[^"]*")
-|(?P<sign>![^!|\n]+!|\+[^+|\s]+\+)
+|(?P<sign>![^!|\s]+!|\+[^+|\s]+\+)
 |(?P<chord>\[[^\]|]*\])(?P<chord_length>{LENGTH})(?P<chord_tie>-?)
 |(?P<grace>\{{[^}}]*\}})
 |(?P<note>{NOTE})
@@ -63,12 +66,13 @@ class VoiceReader:
         self.unit = Fraction(1, 2)
         self._unknown, self._warnings, self._shortcuts = unknown, warnings, shortcuts
         self._alters = dict.fromkeys(LETTERS, 0.0)
-        self._fifths: int | None = 0
-        self._octave = 0
+        self._fifths = 0
+        self._properties = {"clef": 0, "octave": 0, "transpose": 0}
+        self.spread = SPREADS[0]
         self._metre: Fraction | None = Fraction(4)
         self._odd_times = 2  # of tuplets of 5, 7 and 9: 3 in compound time
         self._place = ("C", 0, 0.0)  # of the last note: letter, octave, accidental
-        self._in_bar: dict[str, float] = {}  # accidentals
+        self._in_bar: dict[str | tuple[str, int], float] = {}  # accidentals, by what they reach
         self._tied: dict[tuple[str, int], float] = {}
         self._bar = RawBar("1", BarLines())
         self._at = Fraction(0)
@@ -90,13 +94,20 @@ class VoiceReader:
         self._ending = frozenset()
         return len(self.bars)
 
+    def set_properties(self, found: Mapping[str, int]) -> None:
+        """Take what a field says of where notes sound; it holds from here on."""
+        self._properties |= found
+        fifths = self._fifths + 7 * self._properties["transpose"]
+        self._bar.fifths = nearest_key(fifths) if self._properties["transpose"] else fifths
+
     def field(self, letter: str, value: str) -> None:
         """Take a field that holds from here on."""
         if letter == "K":
-            key = fields.key_of(value)
+            found, _, words = properties_of(value, self._unknown)
+            key = key_of(words, self._unknown) if words or not found else None
             if key is not None:
-                self._fifths, self._alters, self._octave = key
-                self._bar.fifths = self._fifths
+                self._fifths, self._alters = key
+            self.set_properties(found)
         elif letter == "M":
             self._metre = fields.metre_of(value)
             self._bar.metre = self._metre
@@ -170,15 +181,20 @@ class VoiceReader:
         self, sign: str | None, letter: str, octaves: str, length: str
     ) -> tuple[float, Fraction]:
         name = letter.upper()
-        octave = letter.islower() + octaves.count("'") - octaves.count(",") + self._octave
+        octave = letter.islower() + octaves.count("'") - octaves.count(",")
+        reached = name if self.spread == "pitch" else (name, octave)
         if sign:
-            self._in_bar[name] = alter = ALTERS[sign]
-        elif (name, octave) in self._tied and name not in self._in_bar:
+            alter = ALTERS[sign]
+            if self.spread != "not":
+                self._in_bar[reached] = alter
+        elif (name, octave) in self._tied and reached not in self._in_bar:
             alter = self._tied[name, octave]
         else:
-            alter = self._in_bar.get(name, self._alters[name])
+            alter = self._in_bar.get(reached, self._alters[name])
         self._place = name, octave, alter
-        pitch = MIDDLE_C + SEMITONES[name] + alter + 12.0 * octave
+        moved = self._properties
+        octave += moved["clef"] + moved["octave"]
+        pitch = MIDDLE_C + SEMITONES[name] + alter + 12.0 * octave + moved["transpose"]
         return min(max(pitch, 0.0), 127.0), _length(length) * self.unit
 
     def _notes(
@@ -268,7 +284,7 @@ class VoiceReader:
             self._direct("wedge", WEDGES[name])
         elif name.lower() in JUMPS:
             self._bar.lines.jumps.add(JUMPS[name.lower()])
-        elif name not in fields.IGNORED:
+        elif name not in IGNORED:
             self._unknown[one_line(name[:40])] += 1
 
     def _text(self, text: str) -> None:
@@ -303,6 +319,8 @@ class VoiceReader:
             self._ending = self._bar.lines.endings = frozenset()
         if after:
             self._bar.lines.forward = True
+        elif not before and len(sign) > 1:  # from which a repeat without a beginning goes back
+            self._bar.lines.double = True
         if number:
             self._begin_ending(number)
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import codecs
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from yehu_server.errors import ScoreError
+from yehu_server.scores.encodings import LATIN, MARKS, NAMES, encoding_of
 
 # Plain signs for those of Chinese keyboards and word processors; one for one, so that columns stay.
 _PLAIN = {
@@ -56,24 +56,19 @@ def failure(word: Word, reason: str) -> ScoreError:
 def decoded(data: bytes) -> tuple[str, str]:
     """Return the text of a file, and a warning where its encoding was guessed.
 
-    Raises ScoreError where it is no text in UTF-8, UTF-16 or GB 18030.
+    Raises ScoreError where it is no text in UTF-8 or an encoding that `encodings` knows.
     """
+    encoding = encoding_of(data)
+    if encoding == LATIN:  # of which jianpu has no use
+        encoding = "gb18030"
     try:
-        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            return _text(data.decode("utf-16")), ""
-        return _text(data.decode("utf-8-sig")), ""
+        text = data.decode(encoding).removeprefix("\ufeff")
     except UnicodeDecodeError:
-        try:
-            text = _text(data.decode("gb18030"))
-        except UnicodeDecodeError:
-            raise ScoreError("is not text in UTF-8 or GB 18030") from None
-        return text, "is not UTF-8: read as GB 18030"
-
-
-def _text(text: str) -> str:
+        raise ScoreError("is not text in UTF-8 or GB 18030") from None
     if "\0" in text:
         raise ScoreError("is not text")
-    return text
+    is_guess = encoding in NAMES and not data.startswith((*MARKS,))
+    return text, f"is not UTF-8: read as {NAMES[encoding]}" if is_guess else ""
 
 
 def words_of(text: str) -> Iterator[Word | Header]:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from dataclasses import replace
 from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
 from yehu_server.scores.musicxml.marks import VALUES, NoteMarks, neighbour, number
-from yehu_server.scores.score import nearest_key, printable
+from yehu_server.scores.musicxml.vocabulary import tell
+from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import SEMITONES
 from yehu_server.scores.written.notated import MAX_BEATS, MAX_NOTES
 from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
@@ -19,10 +21,7 @@ from yehu_server.scores.written.voices import FINEST, RawBar, RawDirection, RawN
 MAX_DIVISIONS = 1 << 20  # of a quarter note
 LOWEST, HIGHEST = 0.0, 127.0  # MIDI notes
 _NUMBERS = re.compile(r"\d+")
-# What is printed, or sounds by other means than this instrument.
-PRINTED = {
-    "print", "listening", "link", "bookmark", "grouping", "figured-bass", "harmony",
-}  # fmt: skip
+MAX_REPEATED = 8  # bars that a sign repeats
 
 
 class BarReader:
@@ -45,6 +44,8 @@ class BarReader:
         self._graces: list[RawNote] = []  # grace notes before their note
         self._at = Fraction(0)
         self._bar = RawBar("", BarLines())
+        self._before: list[RawBar] = []  # the last bars
+        self._repeated: dict[str, int] = {}  # by staff, how many bars each of these repeats
 
     def read(self, measure: Element) -> RawBar:
         """Read one <measure>. Raises ScoreError where it is longer, or fuller, than any music."""
@@ -72,17 +73,37 @@ class BarReader:
                 directions.sound(child, self._at)
             elif child.tag == "barline":
                 self._barline(child)
-            elif child.tag not in PRINTED:
-                self._unknown[printable(child.tag)] += 1
             elif child.tag in ("harmony", "figured-bass"):
                 self._warnings["chord symbols are not played"] += 1
             if self._at.denominator > FINEST:  # divisions that change and change
                 self._at = self._at.limit_denominator(FINEST)
             if self._at > MAX_BEATS:
                 raise ScoreError(f"has a bar longer than {MAX_BEATS} quarters")
+        tell(measure, bar.number, self._unknown)
+        self._repeat_bars()
+        self._before = [*self._before[1 - MAX_REPEATED :], bar]
         if not bar.notes:  # rests may be longer than their bar, where they fill it
             bar.length = min(bar.length, self._metre) or self._metre
         return bar
+
+    def _repeat_bars(self) -> None:
+        """Fill a bar that a sign (`measure-repeat`) leaves empty with one before."""
+        bar = self._bar
+        for staff, count in self._repeated.items():
+            if count > len(self._before) or any(staff in ("", n.voice[0]) for n in bar.notes):
+                continue
+            source = self._before[-count]
+            copied = [each for each in source.notes if staff in ("", each.voice[0])]
+            bar.notes += [
+                replace(n, marks=[*n.marks], ties={*n.ties}, ends=[*n.ends]) for n in copied
+            ]
+            bar.length = max(bar.length, source.length)
+            self._count(len(copied))
+
+    def _count(self, notes: int) -> None:
+        self._notes += notes
+        if self._notes > MAX_NOTES:
+            raise ScoreError(f"has more than {MAX_NOTES} notes")
 
     def _offset(self, direction: Element) -> Fraction:
         offset = Fraction(int(number(direction.findtext("offset")))) / self._divisions
@@ -109,6 +130,8 @@ class BarReader:
                 self._fifths = int(min(max(number(child.findtext("fifths")), -7.0), 7.0))
             elif child.tag == "time":
                 self._time(child)
+            elif child.tag == "measure-style":
+                self._style(child)
             elif child.tag == "transpose":
                 semitones = number(child.findtext("chromatic"))
                 self._transposed = semitones + 12.0 * number(child.findtext("octave-change"))
@@ -116,6 +139,14 @@ class BarReader:
             # Of the key that sounds, which a transposing part does not write.
             fifths = self._fifths + 7 * int(self._transposed)
             self._bar.fifths = nearest_key(fifths) if self._transposed else fifths
+
+    def _style(self, style: Element) -> None:
+        staff = style.get("number", "")[:8]
+        for sign in style.iterfind("measure-repeat"):
+            self._repeated.pop(staff, None)
+            count = int(number(sign.text, 1.0))
+            if sign.get("type") == "start" and 0 < count <= MAX_REPEATED:
+                self._repeated[staff] = count
 
     def _time(self, time: Element) -> None:
         quarters = Fraction(0)
@@ -143,17 +174,16 @@ class BarReader:
                 self._unknown[f"{child.tag} on a bar line"] += 1
 
     def _read_ending(self, ending: Element) -> None:
-        numbers = {int(number(each)) for each in _NUMBERS.findall(ending.get("number", "")[:64])}
-        numbers = {each for each in numbers if 0 < each <= MAX_TIMES}
+        numbers = _numbers(ending.get("number", ""))
         lines = self._bar.lines
         starts = ending.get("type") == "start"
         if starts or not lines.endings:  # one that ends and has not begun has one bar
             highest, last = self._last_ending
             follows = highest + 1 if last == self._bars - 1 else 1
             if not (starts and numbers):  # the number at an end may be left over from before
-                numbers = {min(follows, MAX_TIMES)}
+                numbers = frozenset({min(follows, MAX_TIMES)})
             if starts or self._bar.lines.times:
-                lines.endings, lines.opens = frozenset(numbers), True
+                lines.endings, lines.opens = numbers, True
         if lines.endings:
             self._last_ending = max(lines.endings), self._bars
         self._ending = lines.endings if starts else frozenset()
@@ -186,10 +216,9 @@ class BarReader:
         pitch = self._pitch(element)
         if pitch is None:
             return
-        self._notes += 1
-        if self._notes > MAX_NOTES:
-            raise ScoreError(f"has more than {MAX_NOTES} notes")
+        self._count(1)
         note.pitch = pitch
+        note.turns = _numbers(element.get("time-only", ""))
         if note.is_grace:
             note.length = VALUES.get((element.findtext("type") or "").strip(), Fraction(1, 2))
             grace = element.find("grace")
@@ -266,6 +295,12 @@ class BarReader:
                     dynamics, note.at
                 )
         note.marks = marks.marks
+
+
+def _numbers(text: str) -> frozenset[int]:
+    """The passes that endings and `time-only` name."""
+    numbers = {int(number(each)) for each in _NUMBERS.findall(text[:64])}
+    return frozenset(each for each in numbers if 0 < each <= MAX_TIMES)
 
 
 def _divisions(element: Element) -> Fraction | None:

@@ -15,8 +15,6 @@ from yehu_server.scores.written.words import meaning_of
 FORTE = 90.0  # the MIDI velocity of which <sound dynamics> is a percentage
 LONGEST_WORDS = 200
 JUMPS = ("dacapo", "dalsegno", "tocoda", "fine", "segno", "coda")
-# These are printed, move pedals that a fiddle has not, or stand for what is read elsewhere.
-PRINTED = {"rehearsal", "bracket", "octave-shift", "principal-voice", "staff-divide", "image"}
 
 
 class DirectionReader:
@@ -61,8 +59,6 @@ class DirectionReader:
             self._words(child.text or "", at, has_tempo=has_tempo, jumps=jumps)
         elif tag in ("segno", "coda"):
             self._jumps.add(tag)
-        elif tag not in PRINTED:
-            self._unknown[printable(tag)] += 1
 
     def _add(
         self, at: Fraction, kind: str, name: str = "", value: float | None = None, which: str = ""
@@ -84,6 +80,8 @@ class DirectionReader:
 
     def sound(self, sound: Element, at: Fraction, *, with_dynamics: bool = True) -> None:
         """Read one <sound>."""
+        if sound.get("time-only"):
+            self._unknown["time-only of a sound"] += 1
         tempo = number(sound.get("tempo"))
         if LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
             self._add(at, "tempo", "playback", tempo)

@@ -33,7 +33,15 @@ MAX_ENTRIES = 1000  # of an archive
 MAX_CONTAINER_BYTES = 1 << 16
 ZIP = b"PK\x03\x04"
 CONTAINER = "META-INF/container.xml"
-_SAYS_UTF16 = re.compile(rb"(?:\xef\xbb\xbf)?\s*<\?xml[^>]*encoding=[\"']utf-?16", re.IGNORECASE)
+_SAYS = re.compile(rb"(?:\xef\xbb\xbf)?\s*<\?xml[^>]*encoding\s*=\s*[\"']([\w.:-]+)")
+# Encodings of several bytes, which expat does not have, as Python calls the widest of each kind.
+CODECS = {
+    **dict.fromkeys(("gb2312", "gbk", "gb18030", "cp936", "gb_2312-80", "x-gbk"), "gb18030"),
+    **dict.fromkeys(("big5", "cp950", "big5-hkscs", "big5hkscs"), "big5hkscs"),
+    **dict.fromkeys(("shift_jis", "shift-jis", "sjis", "x-sjis", "windows-31j", "cp932"), "cp932"),
+    "euc-jp": "euc-jp",
+    "euc-kr": "cp949",
+}
 COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 ENTRY = b"PK\x01\x02"  # before each entry of an archive's directory
 # What zipfile raises for archives that are damaged or made to harm.
@@ -111,10 +119,10 @@ def unpacked(data: bytes) -> bytes:
 
 
 def _score_name(archive: zipfile.ZipFile) -> str:
-    names = archive.namelist()
+    # What a Macintosh keeps beside files is named ._ and the file's name.
+    names = [name for name in archive.namelist() if not name.rpartition("/")[2].startswith("._")]
     if CONTAINER in names:
-        container = parse(_member(archive, CONTAINER, MAX_CONTAINER_BYTES))
-        for file in container.iter("rootfile"):
+        for file in _rootfiles(_member(archive, CONTAINER, MAX_CONTAINER_BYTES)):
             kind = file.get("media-type", "application/vnd.recordare.musicxml+xml")
             if "musicxml" in kind and file.get("full-path") in names:
                 return str(file.get("full-path"))
@@ -122,6 +130,13 @@ def _score_name(archive: zipfile.ZipFile) -> str:
         if name.lower().endswith((".musicxml", ".xml")) and not name.startswith("META-INF/"):
             return name
     raise ScoreError("is an archive without a score")
+
+
+def _rootfiles(container: bytes) -> list[Element]:
+    try:
+        return list(parse(container).iter("rootfile"))
+    except ScoreError:  # the score may be read nevertheless
+        return []
 
 
 def _member(archive: zipfile.ZipFile, name: str, most_bytes: int) -> bytes:
@@ -138,8 +153,8 @@ def _member(archive: zipfile.ZipFile, name: str, most_bytes: int) -> bytes:
 def parse(data: bytes) -> ET.Element:
     """Parse XML of bounded size and depth, without namespaces. Raises ScoreError with the line."""
     builder = _Builder()
-    says_utf16 = _SAYS_UTF16.match(data) is not None  # in bytes that are none
-    parser = expat.ParserCreate("utf-8" if says_utf16 else None)
+    data, encoding = _in_utf8(data)
+    parser = expat.ParserCreate(encoding)
     parser.buffer_text = True
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
@@ -152,9 +167,26 @@ def parse(data: bytes) -> ET.Element:
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code) if error.code else "not well-formed"
         raise ScoreError(f"line {error.lineno}: is not XML ({reason})") from None
-    except (ValueError, LookupError) as error:  # an encoding that is unknown, or has many bytes
-        raise ScoreError(f"is not XML ({type(error).__name__})") from None
+    except (ValueError, LookupError):  # an encoding that is unknown, or has many bytes
+        said = _SAYS.match(data)
+        name = printable(said[1].decode("ascii")) if said else "unknown"
+        raise ScoreError(f"its encoding is not read ({name}); save it as UTF-8") from None
     return builder.root()
+
+
+def _in_utf8(data: bytes) -> tuple[bytes, str | None]:
+    """Bytes that expat reads, and their encoding where it is another than they say."""
+    found = _SAYS.match(data)
+    said = found[1].decode("ascii").lower() if found else ""
+    if said in ("utf-16", "utf16"):  # in bytes that are none
+        return data, "utf-8"
+    codec = CODECS.get(said)
+    if not codec:
+        return data, None
+    try:
+        return data.decode(codec).encode(), "utf-8"
+    except UnicodeDecodeError:
+        raise ScoreError(f"says that it is {said}, which it is not; save it as UTF-8") from None
 
 
 class _Builder:

@@ -36,7 +36,15 @@ from yehu_server.scores.score import (
     read_score_bytes,
 )
 from yehu_server.scores.smf.chunks import Part, read_parts, unwrapped
-from yehu_server.scores.smf.track import SMPTE, Clock, DamageReport, Placed, Track, checked_division
+from yehu_server.scores.smf.track import (
+    SMPTE,
+    Clock,
+    DamageReport,
+    Placed,
+    Track,
+    checked_division,
+    named,
+)
 from yehu_server.scores.smf.tunings import retuned
 
 # Controllers: all sound off, all notes off, and changes of mode, which end notes too.
@@ -193,8 +201,10 @@ def _play_together(
         for event in events
         if event.message.type == "note_on" and event.message.channel != PERCUSSION_CHANNEL
     }
-    names = {number: track.name for number, track in enumerate(tracks, start=first)}
-    parts = _parts(places, names)
+    names, encoding = named(tracks)
+    parts = _parts(places, dict(enumerate(names, start=first)))
+    if encoding:
+        remarks = (*remarks, f"names of tracks are not UTF-8: read as {encoding}")
     return Score(
         tuned,
         end_s,

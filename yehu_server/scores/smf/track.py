@@ -12,6 +12,7 @@ from functools import lru_cache
 import mido
 
 from yehu_server.errors import ScoreError
+from yehu_server.scores.encodings import NAMES, decoded, encoding_of
 from yehu_server.scores.smf.tunings import MAX_MESSAGES, is_tuning
 
 MAX_KINDS = 30  # listed separately; a hostile file could have one for each of its bytes
@@ -61,7 +62,7 @@ SMPTE = 0x8000
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
 TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE, KEY_SIGNATURE = 0x03, 0x2F, 0x51, 0x58, 0x59
 MAX_SHARPS = 7  # or flats, of a key signature
-LONGEST_NAME = 40  # characters
+LONGEST_NAME, LONGEST_NAME_BYTES = 40, 160  # characters of 1 to 4 bytes
 STATUS = re.compile(rb"[\x80-\xff]")
 SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
 NUMBER_BYTES = 4  # of a variable-length number, as the format has it
@@ -136,7 +137,7 @@ class Track:
     end_at: int = 0  # byte of the last event
     events: int = 0  # of any kind, dropped ones too
     longest: tuple[int, int, int] = (0, 0, 0)  # rest before an event: ticks, its end, its byte
-    name: str = ""
+    name: bytes = b""  # in an encoding that nothing says
     start_at: int = 0  # its first byte in the file
     is_whole: bool = True  # not cut in the middle of an event
     after_end: int | None = None  # byte after the end-of-track event
@@ -247,7 +248,7 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
 def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: DamageReport) -> None:
     """Keep a tempo, a signature of time or key, or the track's name; other metas are dropped."""
     if kind == TRACK_NAME and not track.name:
-        track.name = _text(body)
+        track.name = body[:LONGEST_NAME_BYTES]
     elif kind == SET_TEMPO:
         tempo = int.from_bytes(body[:3], "big")
         if len(body) >= 3 and tempo > 0:
@@ -267,10 +268,9 @@ def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: Dama
             faults.add("an impossible key signature ignored", at)
 
 
-def _text(body: bytes) -> str:
-    """A name in UTF-8, or in whatever the writer's system had."""
-    try:
-        text = body.decode("utf-8")
-    except UnicodeDecodeError:
-        text = body.decode("latin-1")
-    return "".join(sign for sign in text if sign.isprintable()).strip()[:LONGEST_NAME]
+def named(tracks: Sequence[Track]) -> tuple[list[str], str]:
+    """The names of tracks, and the name of their encoding where it is not UTF-8 or Latin-1."""
+    encoding = encoding_of(*(track.name for track in tracks))
+    names = [decoded(track.name, encoding) for track in tracks]
+    plain = ["".join(filter(str.isprintable, name)).strip()[:LONGEST_NAME] for name in names]
+    return plain, NAMES.get(encoding, "")

@@ -106,6 +106,7 @@ def _lines(parts_bars: list[list[RawBar]], number: int) -> BarLines:
         if number < len(bars):
             lines = bars[number].lines
             found.forward |= lines.forward
+            found.double |= lines.double
             found.times = max(found.times, lines.times)
             found.endings |= lines.endings
             found.opens |= lines.opens

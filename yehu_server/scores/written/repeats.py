@@ -1,8 +1,9 @@
 """The order in which bars are played: repeats, endings, da capo, dal segno, coda, fine.
 
 First the repeated passages are found, also where signs are missing: a repeat without a beginning
-begins where the one before it ended, an ending reaches up to its repeat, or has one where another
-ending follows. Then bars are played in the order in which a player reads them.
+begins where the one before it ended, or at the last double bar line of ABC, an ending reaches up to
+its repeat, or has one where another ending follows. Then bars are played in the order in which a
+player reads them.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ class BarLines:
     opens: bool = False  # whether an ending begins here
     # Of dacapo, dalsegno, tocoda and fine, at its end; segno and coda, at its beginning.
     jumps: set[str] = field(default_factory=set)
+    # Whether a double bar line stands before it, to which a repeat without a beginning goes back.
+    double: bool = False
 
 
 @dataclass
@@ -108,6 +111,8 @@ def _passages(bars: Sequence[BarLines]) -> list[_Passage]:
                 open_[-1] = passage, number + 1
                 levels[-1] = _Level(at)
         level = levels[-1]
+        if bar.double and level.sign is None:
+            level.base = at
         if bar.forward and not (len(levels) > 1 and at == open_[-1][0].first):
             level.sign = at
         ends = bool(open_) and at == open_[-1][0].endings[open_[-1][1]].last

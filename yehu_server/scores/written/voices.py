@@ -6,6 +6,7 @@ of them. In voices ties are joined, spans closed and repeats unfolded.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -19,6 +20,7 @@ FINEST = 1 << 24  # the smallest part of a quarter note is this one
 RANKS = {"words": 0, "figures": 1, "playback": 2}
 SPANS = {"slur": "slur", "glissando": "glissando", "slide": "portamento"}
 MAX_VOICES = 16  # of a part; no music has more
+MAX_WAVY = 100  # notes under a wavy line
 LONGEST_HAIRPIN = Fraction(32)  # in words, where no sign ends it
 
 
@@ -36,6 +38,7 @@ class RawNote:
     ties: set[str] = field(default_factory=set)  # start, stop
     # Spans that begin or end here: their name, `start` or `stop`, and their number.
     ends: list[tuple[str, str, str]] = field(default_factory=list)
+    turns: frozenset[int] = frozenset()  # the passes of a repeat in which it sounds; empty: all
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,7 @@ class Voice:
 
     notes: list[Note] = field(default_factory=list)
     spans: list[Span] = field(default_factory=list)
+    staff: list[Voice] = field(default_factory=list)  # all voices of its staff
     _graces: list[Grace] = field(default_factory=list)
     _tied: dict[float, int] = field(default_factory=dict)  # by pitch, the note that goes on
     _open: dict[tuple[str, str], tuple[Fraction, float | None]] = field(default_factory=dict)
@@ -103,6 +107,9 @@ class Voice:
         beat = begin + raw.at
         self._ends(raw, beat)
         at = self._tied.pop(raw.pitch, None)  # some writers write only the beginning of a tie
+        is_alone = at is None and "stop" in raw.ties
+        if is_alone and any(voice.lengthen(raw, beat) for voice in self.staff):
+            return
         if at is not None and self.notes[at].end == beat:
             note = self.notes[at]
             more = tuple(mark for mark in raw.marks if mark not in note.marks)
@@ -115,6 +122,16 @@ class Voice:
         if "start" in raw.ties:
             self._tied[raw.pitch] = at
         self._two_note_tremolo(raw)
+
+    def lengthen(self, raw: RawNote, beat: Fraction) -> bool:
+        """Let the last note last longer if it is one that another voice ties on; whether it is."""
+        at = self._tied.get(raw.pitch)
+        if at is None or at != len(self.notes) - 1 or self.notes[at].end != beat:
+            return False
+        self.notes[at] = replace(self.notes[at], length=self.notes[at].length + raw.length)
+        if "start" not in raw.ties:
+            del self._tied[raw.pitch]
+        return True
 
     def _shorten_last(self, beat: Fraction) -> None:
         """End what still sounds: one note at a time."""
@@ -139,8 +156,20 @@ class Voice:
                 elif (name, number) in self._open:
                     opened, value = self._open.pop((name, number))
                     if name == "wavy-line" and value is None:
+                        self._vibrate(opened, raw)
                         continue
                     self.spans.append(Span(SPANS.get(name, "trill"), opened, beat, value))
+
+    def _vibrate(self, begin: Fraction, last: RawNote) -> None:
+        """Let the notes after the first one of a wavy line have a vibrato, too."""
+        if not any(mark.name == "vibrato" for mark in last.marks):
+            last.marks.append(Mark("vibrato"))
+        for at in range(len(self.notes) - 1, max(len(self.notes) - MAX_WAVY, 0) - 1, -1):
+            note = self.notes[at]
+            if note.beat <= begin:
+                break
+            if note.marked("vibrato") is None:
+                self.notes[at] = replace(note, marks=(*note.marks, Mark("vibrato")))
 
     def _two_note_tremolo(self, raw: RawNote) -> None:
         """Two notes in quick turns: each trills with the other, on one bow."""
@@ -219,13 +248,18 @@ def parts_of(
         for note in bar.notes:
             if len(voices) < MAX_VOICES:
                 voices.setdefault(note.voice, Voice())
+    for (staff, _), each in voices.items():
+        each.staff += [its for (other, _), its in voices.items() if other == staff]
     directions = Directions()
+    passes: Counter[int] = Counter()
     for number, begin in played:
         if number >= len(bars):
             continue
+        passes[number] += 1
         by_voice: dict[tuple[str, str], list[RawNote]] = {}
         for note in bars[number].notes:
-            by_voice.setdefault(note.voice, []).append(note)
+            if not note.turns or passes[number] in note.turns:
+                by_voice.setdefault(note.voice, []).append(note)
         for key, notes in by_voice.items():
             if key in voices:
                 voices[key].add_bar(notes, begin)

@@ -1,0 +1,106 @@
+"""Names in any encoding: Chinese and Japanese are found, and Latin accents stay what they are."""
+
+from __future__ import annotations
+
+import mido
+import pytest
+
+from yehu_server.errors import ScoreError
+from yehu_server.scores.abc.reader import read_abc
+from yehu_server.scores.encodings import decoded, encoding_of
+from yehu_server.scores.jianpu.reader import parse_jianpu
+from yehu_server.scores.midi_export import midi_file
+from yehu_server.scores.musicxml.reader import parse
+from yehu_server.scores.reading import ReadOptions, read_any
+from yehu_server.scores.written.performed import performed
+
+SIMPLIFIED = [
+    "旋律", "伴奏", "二胡", "琵琶", "唢呐", "古筝", "笛子", "扬琴", "椰胡", "箫", "主旋律",
+    "茉莉花", "第一声部", "二泉映月《二胡》", "Erhu二胡",
+]  # fmt: skip
+TRADITIONAL = [
+    "旋律", "伴奏", "二胡", "琵琶", "嗩吶", "古箏", "笛子", "揚琴", "椰胡", "主旋律", "茉莉花",
+    "第一聲部",
+]  # fmt: skip
+JAPANESE = ["メロディ", "伴奏", "ピアノ", "尺八", "三味線", "さくらさくら", "ギター1"]
+LATIN = [
+    "Flöte", "Größe", "Café", "naïve", "Violín", "Señor", "Für Elise", "Été", "São João", "CANÇÃO",
+    "Ænima", "N° 2", "½ speed", "Ångström", "«Ça ira»", "NOËL", "Où", "Übung", "Är", "vy är",
+    "Bjørn Ærø", "CRÈME BRÛLÉE", "és", "Þá birtast", "señorita año", "Ça", "© 1997",
+]  # fmt: skip
+
+
+def test_each_encoding_is_found_by_the_characters_of_every_day():
+    wrong = []
+    for names, codec in (
+        (SIMPLIFIED, "gbk"), (SIMPLIFIED, "gb18030"), (TRADITIONAL, "big5"), (JAPANESE, "cp932"),
+    ):  # fmt: skip
+        coded = [name.encode(codec) for name in names]
+        found = [decoded(each, encoding_of(each)) for each in coded]  # each by itself
+        wrong += [(codec, *pair) for pair in zip(names, found, strict=True) if len({*pair}) > 1]
+    for names in (SIMPLIFIED, TRADITIONAL, JAPANESE):  # all names of a file
+        for codec in ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"):
+            coded = [name.encode(codec) for name in names]
+            found = [decoded(each, encoding_of(*coded)) for each in coded]
+            wrong += [(codec, *pair) for pair in zip(names, found, strict=True) if len({*pair}) > 1]
+    assert not wrong
+
+
+def test_latin_names_do_not_become_chinese():
+    wrong = []
+    for codec in ("latin-1", "cp1252", "utf-8"):
+        coded = [name.encode(codec) for name in [*LATIN, "Piano", ""]]
+        found = {texts: encoding_of(*texts) for texts in (*((each,) for each in coded), (*coded,))}
+        wrong += [pair for pair in found.items() if pair[1] not in ("latin-1", "utf-8")]
+    assert not wrong
+    assert decoded("Flöte".encode("latin-1"), "latin-1") == "Flöte"
+    assert encoding_of("Don\u2019t".encode("cp1252")) == "latin-1"  # which is no kanji
+
+
+@pytest.mark.parametrize(
+    ("codec", "told"),
+    [("gbk", "GB 18030"), ("utf-16", ""), ("utf-8", ""), ("big5", "Big5"), ("utf-16-le", "UTF-16")],
+)
+def test_the_tune_of_a_midi_file_is_found_by_its_name(codec, told, tmp_path):
+    file = mido.MidiFile(type=1)
+    for name, key in (("高胡伴奏", 79), ("旋律", 72)):
+        file.tracks.append(mido.MidiTrack([
+            mido.MetaMessage("track_name", name=name.encode(codec).decode("latin-1")),
+            mido.Message("note_on", note=key), mido.Message("note_off", note=key, time=960),
+        ]))  # fmt: skip
+    file.save(tmp_path / "song.mid")
+    for options in (ReadOptions(), ReadOptions(parts=["旋律"])):
+        score = read_any(tmp_path / "song.mid", options)
+        assert [part.name for part in score.parts] == ["旋律"]
+        struck = [event.message for event in score.events if event.message.type == "note_on"]
+        assert [message.note for message in struck] == [72]
+        assert any(told in line for line in score.remarks) or not told
+        assert told or not any("not UTF-8" in line for line in score.remarks)
+
+
+def test_scores_are_read_in_the_encoding_that_they_have_or_say(tmp_path):
+    wrong = []
+    for codec in ("utf-8", "gbk", "big5", "utf-16", "utf-8-sig", "utf-16-le"):
+        path = tmp_path / "song.abc"
+        path.write_bytes("X:1\nT:二胡旋律\nK:C\nCD|\n".encode(codec))
+        title = parse_jianpu("title=二胡旋律\n1 2 3 4\n".encode(codec)).title
+        if (read_abc(path).title, title) != ("二胡旋律", "二胡旋律"):
+            wrong.append((codec, read_abc(path).title, title))
+    for said, codec in (
+        ("GB2312", "gbk"), ("GBK", "gbk"), ("GB18030", "gb18030"), ("Big5", "big5"),
+        ("Shift_JIS", "cp932"), ("UTF-16", "utf-16"), ("UTF-8", "utf-8"), ("utf-16", "utf-8"),
+    ):  # fmt: skip
+        text = f'<?xml version="1.0" encoding="{said}"?><name>二胡</name>'
+        if parse(text.encode(codec)).text != "二胡":
+            wrong.append((said, parse(text.encode(codec)).text))
+    assert not wrong
+    for said, reason in (("strange", "not read .strange."), ("GBK", "says that it is gbk")):
+        with pytest.raises(ScoreError, match=reason):
+            parse(f'<?xml version="1.0" encoding="{said}"?><name>Flö,</name>'.encode("latin-1"))
+
+
+def test_names_are_written_to_midi_in_utf_8(tmp_path):
+    (tmp_path / "song.abc").write_text('X:1\nT:二胡\nK:C\nV:1 name="旋律"\nC|\n', encoding="utf-8")
+    written = read_abc(tmp_path / "song.abc")
+    data, _ = midi_file(written, performed(written))
+    assert "旋律".encode() in data

@@ -41,7 +41,7 @@ def test_what_memory_begins_with_counts_in_the_hash(tmp_path, monkeypatch):
 
 
 def test_what_cannot_be_built_is_refused(tmp_path, monkeypatch, refused):
-    with pytest.raises(ParameterError, match="'pdp11' is no level"):
+    with pytest.raises(ParameterError, match="'pdp11' is not a level"):
         build("library", tmp_path, level="pdp11")
     with pytest.raises(YehuError, match=r"^sample rate: 5.0 Hz is not within"):
         build("library", tmp_path, rates=[5.0])

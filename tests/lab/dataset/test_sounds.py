@@ -80,7 +80,7 @@ WRONG = {
     "draw.string: whole numbers only": {"draw": {"string": {"from": 1, "to": 2}}},
     "keep.signals: 'pressur' is not one of": {"keep": {"signals": ["pressur"]}},
     "keep.every: expected a whole number": {"keep": {"every": 0}},
-    "split: a/b: is no plain name": {"split": {"a/b": 1}},
+    "split: a/b: is not a plain folder name": {"split": {"a/b": 1}},
     "split: names that differ": {"split": {"a": 1, "A": 1}},
     "split: numbers from 0": {"split": {"a": 0}},
     "instrument": {"instrument": {"x": 1}},

@@ -66,6 +66,8 @@ MAIL = np.dtype(
         ("behind", np.int64, QUEUES),  # order of the last one posted after a later frame's
         ("pending_events", np.int64),  # events in all queues
         ("served", np.int64),  # page whose event was interpreted last
+        ("lead", np.int64),  # commands that pages may have before the server's next event
+        ("released", np.int64),  # note-ons that were posted before this one are not played
         ("waiting", np.int64),  # entries in the heap of commands
         ("reporting", np.int64),
         ("intake", np.int64),  # events moved from each ring at a time

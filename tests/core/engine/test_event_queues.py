@@ -222,3 +222,18 @@ def test_a_full_queue_of_midi_waits_in_its_ring() -> None:
         post(instrument, MIDI_INPUTS, soon, MESSAGE, packed([0xB0, 7, 100], 0))
     play(instrument, 8 * BLOCK)
     assert instrument.dropped_events == 0
+
+
+def test_a_page_is_not_late_for_what_costs_much_of_many_others() -> None:
+    instrument = live()
+    for page in range(30):
+        post_of_page(instrument, page, 0, LIFT)
+    for n in range(100):
+        for page in range(30):
+            post_of_page(instrument, page, DUE, START, 0, 1.0)
+        if n % 16 == 0:
+            play(instrument, BLOCK)
+    play(instrument, DUE + 10 - instrument.frame)
+    post_of_page(instrument, 40, now := instrument.frame, BEGIN, 1, MARK, MARK)
+    (page,) = frames_of(play(instrument, 9000), BEGIN, MARK)
+    assert page < now + BLOCK

@@ -5,8 +5,8 @@ that it is for are computed (``midi.interpret_events``); its commands go to the 
 play.
 
 Whatever is sent, the work for a frame is bounded: events beyond a budget of commands
-(``mailbox.ready_at``) come at a later frame, MIDI's first. Then the server and pages have as many
-commands each where both have some, and pages take turns. Each has a queue of its own.
+(``mailbox.ready_at``) come at a later frame, MIDI's first. Then the server and each page have
+as many commands each (`next_queue`). Each has a queue of its own.
 """
 
 from __future__ import annotations
@@ -124,10 +124,7 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
             price += max(0, m.commands - 1)
             hand_over(rigs, part, m)
         spend(mail.interpreting, frame, price)
-        if number == SERVER:
-            mail.lead = price
-        elif number >= PAGES:
-            mail.lead -= price
+        mail.had[number] = mail.served + price
         if is_full:
             drain(rigs, rig, mail, now)
     return end
@@ -160,18 +157,24 @@ def first_frame(mail: Any) -> int:
 
 @compiled_with_aliasing
 def next_queue(mail: Any, frame: int) -> int:
-    """The queue whose first event is next, of those that have one due at a frame."""
-    for number in range(PAGES):
-        is_due = mail.pending[number] > 0 and mail.first[number] <= frame
-        if is_due and (number != SERVER or mail.lead <= 0):
+    """The queue whose first event is next, of those that have one due at a frame.
+
+    Inputs come first. Of the others it is the one that had the fewest commands: start-time fair
+    queueing (Goyal, Vin and Cheng 1996), which takes one that was idle as even with those it meets,
+    and here before them.
+    """
+    chosen, least = -1, 0
+    for number in range(QUEUES):
+        if mail.pending[number] == 0 or mail.first[number] > frame:
+            continue
+        if number in (MIDI_INPUTS, SOUND_INPUT):
             return number
-    page = mail.served
-    for _ in range(PAGE_QUEUES):
-        page = (page + 1) % PAGE_QUEUES
-        if mail.pending[PAGES + page] > 0 and mail.first[PAGES + page] <= frame:
-            mail.served = page
-            return int(PAGES + page)
-    return SERVER
+        had = max(mail.had[number], mail.served)
+        is_less = had == least and mail.had[number] < mail.had[chosen]
+        if chosen < 0 or had < least or is_less:
+            chosen, least = number, had
+    mail.served = least
+    return chosen
 
 
 @compiled_with_aliasing

@@ -129,6 +129,26 @@ def test_midi_is_not_late_for_what_the_server_is_sent() -> None:
     assert max(frame for frame, *_ in applied) > DUE + 2000
 
 
+def test_a_page_is_not_late_for_what_the_server_is_sent_nor_the_server_for_pages() -> None:
+    instrument = live()
+    for n in range(8000):
+        post(instrument, SERVER, DUE, END, 7, 60.0 + n % 12)
+    play(instrument, DUE + 10 - instrument.frame)
+    post_of_page(instrument, 5, now := instrument.frame, BEGIN, 1, MARK, MARK)
+    (page,) = frames_of(play(instrument, 4000), BEGIN, MARK)
+    assert page < now + BLOCK
+
+
+def test_releases_of_all_cost_as_little_as_others_however_much_waits() -> None:
+    instrument = live()
+    fill_queues(instrument, 12, due=100_000)
+    for _ in range(200):
+        post_of_page(instrument, 20, 8000, RELEASE_ALL, 0, 1.0)
+    post_of_page(instrument, 20, 8000, SLIDE, 0, MARK)
+    (last,) = frames_of(play(instrument, 8400 - instrument.frame), SLIDE, MARK)
+    assert last < 8000 + BLOCK
+
+
 def test_a_page_that_fills_its_queue_loses_its_own_events_and_still_ends_what_it_played() -> None:
     instrument = live()
     room = PAGE_QUEUE - PAGE_RESERVE
@@ -192,7 +212,7 @@ def test_a_release_of_all_cancels_what_waits_in_every_queue() -> None:
     play(instrument, BLOCK)
     post(instrument, SERVER, DUE - 10, RELEASE_ALL)
     applied = play(instrument, DUE + 100)
-    assert not [kind for _, kind, *_ in applied if kind == BEGIN]
+    assert not [kind for _, kind, *_ in applied if kind in (-1, BEGIN)]  # nor anything else
 
 
 def test_a_full_queue_of_midi_waits_in_its_ring() -> None:
@@ -202,3 +222,18 @@ def test_a_full_queue_of_midi_waits_in_its_ring() -> None:
         post(instrument, MIDI_INPUTS, soon, MESSAGE, packed([0xB0, 7, 100], 0))
     play(instrument, 8 * BLOCK)
     assert instrument.dropped_events == 0
+
+
+def test_a_page_is_not_late_for_what_costs_much_of_many_others() -> None:
+    instrument = live()
+    for page in range(30):
+        post_of_page(instrument, page, 0, LIFT)
+    for n in range(100):
+        for page in range(30):
+            post_of_page(instrument, page, DUE, START, 0, 1.0)
+        if n % 16 == 0:
+            play(instrument, BLOCK)
+    play(instrument, DUE + 10 - instrument.frame)
+    post_of_page(instrument, 40, now := instrument.frame, BEGIN, 1, MARK, MARK)
+    (page,) = frames_of(play(instrument, 9000), BEGIN, MARK)
+    assert page < now + BLOCK

@@ -5,8 +5,8 @@ that it is for are computed (``midi.interpret_events``); its commands go to the 
 play.
 
 Whatever is sent, the work for a frame is bounded: events beyond a budget of commands
-(``mailbox.ready_at``) come at a later frame, MIDI's before the server's, and these before those of
-pages, which take turns. Each has a queue of its own.
+(``mailbox.ready_at``) come at a later frame, MIDI's first. Then the server and each page have
+as many commands each (`next_queue`). Each has a queue of its own.
 """
 
 from __future__ import annotations
@@ -112,18 +112,19 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
         kind, index, value, other = event.kind, event.index, event.value, event.other
         pop(queue, mail.pending[number])
         count_event(mail, queue, number, -1)
-        scanned = 0
+        price = 1
         if kind in (NOTE_OFF, END):
             if order <= mail.behind[number] and find_key(m, index, value) == NONE:
-                scanned = cancel(queue, mail.pending[number], order, kind, index, value)
+                price += cancel(queue, mail.pending[number], order, index, value) // SCANNED
         elif kind == RELEASE_ALL:
-            for each in range(QUEUES):
-                if mail.pending[each] > 0:
-                    waiting = events_of(rig, each)
-                    scanned += cancel(waiting, mail.pending[each], order, kind, index, value)
-        interpret(m, at(rig, TABLES_AT), frame, kind, index, value, other)
-        spend(mail.interpreting, frame, max(1, m.commands) + scanned // SCANNED)
-        hand_over(rigs, part, m)
+            mail.released = max(mail.released, order)
+        is_released = order < mail.released and kind in (NOTE_ON, FINGER_ON, BEGIN)
+        if kind != NOTHING and not is_released:
+            interpret(m, at(rig, TABLES_AT), frame, kind, index, value, other)
+            price += max(0, m.commands - 1)
+            hand_over(rigs, part, m)
+        spend(mail.interpreting, frame, price)
+        mail.had[number] = mail.served + price
         if is_full:
             drain(rigs, rig, mail, now)
     return end
@@ -156,17 +157,24 @@ def first_frame(mail: Any) -> int:
 
 @compiled_with_aliasing
 def next_queue(mail: Any, frame: int) -> int:
-    """The queue whose first event is next, of those that have one due at a frame."""
-    for number in range(PAGES):
-        if mail.pending[number] > 0 and mail.first[number] <= frame:
+    """The queue whose first event is next, of those that have one due at a frame.
+
+    Inputs come first. Of the others it is the one that had the fewest commands: start-time fair
+    queueing (Goyal, Vin and Cheng 1996), which takes one that was idle as even with those it meets,
+    and here before them.
+    """
+    chosen, least = -1, 0
+    for number in range(QUEUES):
+        if mail.pending[number] == 0 or mail.first[number] > frame:
+            continue
+        if number in (MIDI_INPUTS, SOUND_INPUT):
             return number
-    page = mail.served
-    for _ in range(PAGE_QUEUES):
-        page = (page + 1) % PAGE_QUEUES
-        if mail.pending[PAGES + page] > 0 and mail.first[PAGES + page] <= frame:
-            break
-    mail.served = page
-    return int(PAGES + page)
+        had = max(mail.had[number], mail.served)
+        is_less = had == least and mail.had[number] < mail.had[chosen]
+        if chosen < 0 or had < least or is_less:
+            chosen, least = number, had
+    mail.served = least
+    return chosen
 
 
 @compiled_with_aliasing
@@ -268,8 +276,8 @@ def hand_over(rigs: Any, part: int, m: Any) -> None:
 
 
 @compiled_with_aliasing
-def cancel(events: Any, pending: int, order: int, kind: int, channel: int, key: float) -> int:
-    """Cancel scheduled note-ons whose note-off arrives before they begin.
+def cancel(events: Any, pending: int, order: int, channel: int, key: float) -> int:
+    """Cancel scheduled note-ons of a key whose note-off arrives before they begin.
 
     Parameters
     ----------
@@ -285,6 +293,6 @@ def cancel(events: Any, pending: int, order: int, kind: int, channel: int, key: 
         event = events[n].command
         if event.kind not in (NOTE_ON, FINGER_ON, BEGIN) or events[n].order > order:
             continue
-        if kind == RELEASE_ALL or (event.index == channel and event.value == key):
+        if event.index == channel and event.value == key:
             event.kind = NOTHING
     return pending

@@ -65,7 +65,10 @@ MAIL = np.dtype(
         ("latest", np.int64, QUEUES),  # frame of any event since it was empty
         ("behind", np.int64, QUEUES),  # order of the last one posted after a later frame's
         ("pending_events", np.int64),  # events in all queues
-        ("served", np.int64),  # page whose event was interpreted last
+        # Commands that each queue had, and the one of whom the last event was had before it.
+        ("had", np.int64, QUEUES),
+        ("served", np.int64),
+        ("released", np.int64),  # note-ons that were posted before this one are not played
         ("waiting", np.int64),  # entries in the heap of commands
         ("reporting", np.int64),
         ("intake", np.int64),  # events moved from each ring at a time

@@ -104,9 +104,9 @@ int main(int count, char **words) {
         for (int i = 0; i < AT_ONCE; i++) posted += message(yehu, frame + below(BLOCK));
         play(yehu, 1);
         if (block % ROUND) continue;
-        play(yehu, 40); /* what waits is applied */
+        play(yehu, 400); /* what waits is applied, so many commands a frame */
         end_all(yehu);
-        play(yehu, 40);
+        play(yehu, 400);
         int64_t *record = yehu;
         left += record[held] != 0 || record[sounding] != -1 || !isnan(yehu_pitch(yehu));
     }

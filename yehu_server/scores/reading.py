@@ -183,11 +183,13 @@ def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
 def _midi_played(score: Score, options: ReadOptions) -> Score:
     is_mpe = options.is_mpe or chosen_parts.says_mpe(score)
     tune = score if is_mpe else chosen_parts.default_midi_part(score)
-    score = replace(score, delays=midi_delays(score, tune))
+    delays = midi_delays(score, tune)
     if options.parts:
         score = chosen_parts.parts_chosen(score, options.parts)
     elif len(score.parts) > 1 and not (options.all_parts or is_mpe):
-        score = chosen_parts.default_midi_part(score, options.within)
+        is_usual = options.within == YEHU
+        score = tune if is_usual else chosen_parts.default_midi_part(score, options.within)
+    score = replace(score, delays=delays)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
         return replace(score, remarks=(*score.remarks, line))

@@ -12,7 +12,7 @@ from yehu_server.scores.abc import fields
 from yehu_server.scores.abc.fields import ALTERS, DECORATIONS, JUMPS, WEDGES
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
-from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
+from yehu_server.scores.written.repeats import MAX_BARS, MAX_TIMES, BarLines
 from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
@@ -23,13 +23,13 @@ MOST_BARS_REST = 1000
 LENGTH = r"\d*/*\d*"
 NOTE = rf"(\^\^|\^|__|_|=)?([A-Ga-g])([',]*)({LENGTH})(-?)"
 TOKEN = re.compile(
-    rf"""(?P<field>\[[A-Za-z]:[^\]]*\])
+    rf"""(?P<field>\[[A-Za-z]:[^\]]{{0,255}}\])
 |(?P<bar>\.?(?::*\[?\|[|\]]*:*|::+))(?P<number>[1-9][\d,\-]*)?
 |(?P<ending>\[[1-9][\d,\-]*)
 |(?P<text>"[^"]*")
 |(?P<sign>![^!|\n]+!|\+[^+|\s]+\+)
-|(?P<chord>\[[^\]|]*\])(?P<chord_length>{LENGTH})(?P<chord_tie>-?)
-|(?P<grace>\{{[^}}]*\}})
+|(?P<chord>\[[^\[\]|]*\])(?P<chord_length>{LENGTH})(?P<chord_tie>-?)
+|(?P<grace>\{{[^{{}}]*\}})
 |(?P<note>{NOTE})
 |(?P<rest>[zx])(?P<rest_length>{LENGTH})
 |(?P<bars>[ZX])(?P<bars_count>\d*)
@@ -198,9 +198,7 @@ class VoiceReader:
 
     def _add(self, notes: list[RawNote], length: Fraction) -> None:
         """Put a note, or a rest, where the music is."""
-        self._count += 1
-        if self._count > MAX_NOTES:
-            raise ScoreError(f"has more than {MAX_NOTES} notes")
+        self._count_note()
         length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
         self._next_factor = Fraction(1)
         length = min(length, Fraction(LONGEST))
@@ -210,6 +208,11 @@ class VoiceReader:
             if length > 0:
                 self._bar.notes.append(note)
         self._at += length
+
+    def _count_note(self) -> None:
+        self._count += 1
+        if self._count > MAX_NOTES:
+            raise ScoreError(f"has more than {MAX_NOTES} notes")
 
     def _chord(self, found: re.Match[str]) -> None:
         inner = list(re.finditer(NOTE, found["chord"]))
@@ -222,6 +225,7 @@ class VoiceReader:
 
     def _graces(self, text: str) -> None:
         for each in re.finditer(NOTE, text):
+            self._count_note()
             pitch, _ = self._pitched(*each.groups()[:4])
             self._bar.notes.append(
                 RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
@@ -313,6 +317,8 @@ class VoiceReader:
             bar.length = self._at
             bar.number = str(len(self.bars) + 1)
             self.bars.append(bar)
+            if len(self.bars) > MAX_BARS:
+                raise ScoreError(f"has more than {MAX_BARS} bars")
             self._bar = RawBar("", BarLines(endings=self._ending))
             self._at = self._last_begin = Fraction(0)
             self._in_bar = {}

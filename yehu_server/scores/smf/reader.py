@@ -175,13 +175,7 @@ def _play_together(
         check_duration(end_s, max_duration_h)
     except ScoreError as error:
         raise ScoreError(f"{error}{_longest_rest(tracks, clock, end_s)}") from None
-    starts = [track.start_at for track in tracks]  # a message's byte is within its track
-    events = tuple(
-        ScoreEvent(
-            clock.seconds(tick), message, clock.beat(tick), first - 1 + bisect_right(starts, at)
-        )
-        for tick, message, at in messages
-    )
+    events = _events(messages, clock, [track.start_at for track in tracks], first)
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
     metres = [Metre(clock.beat(tick), quarters) for tick, quarters in signatures]
     tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
@@ -201,6 +195,20 @@ def _play_together(
         remarks=remarks,
         keys=_keys(tracks, division),
     )
+
+
+def _events(
+    messages: Sequence[Placed], clock: Clock, starts: Sequence[int], first: int
+) -> tuple[ScoreEvent, ...]:
+    """Messages at their times; each is of the track within whose bytes it lies."""
+    events: list[ScoreEvent] = []
+    before, seconds, beat = -1, 0.0, 0.0
+    for tick, message, at in messages:
+        if tick != before:
+            before, seconds, beat = tick, clock.seconds(tick), clock.beat(tick)
+        track = first - 1 + bisect_right(starts, at)
+        events.append(ScoreEvent(seconds, message, beat, track))
+    return tuple(events)
 
 
 def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:
@@ -230,7 +238,17 @@ def _parts(places: set[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePa
     tracks = sorted({track for track, _ in places})
     channels = sorted({channel for _, channel in places})
     if len(tracks) > 1:
-        named = [(names.get(track) or _unnamed(track, places), track) for track in tracks]
+        by_track, by_channel = defaultdict(set), defaultdict(set)
+        for track, channel in places:
+            by_track[track].add(channel)
+            by_channel[channel].add(track)
+
+        def unnamed(track: int) -> str:
+            own = min(by_track[track])
+            is_alone = len(by_track[track]) == len(by_channel[own]) == 1
+            return f"channel {own + 1}" if is_alone else f"track {track}"
+
+        named = [(names.get(track) or unnamed(track), track) for track in tracks]
         found = [ScorePart(name, track=track) for name, track in named]
     else:
         alone = names.get(tracks[0], "") if len(channels) == 1 else ""
@@ -240,10 +258,3 @@ def _parts(places: set[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePa
         replace(part, name=f"{part.name} ({part.track})") if counts[part.name] > 1 else part
         for part in found
     )
-
-
-def _unnamed(track: int, places: set[tuple[int, int]]) -> str:
-    own = {channel for each, channel in places if each == track}
-    others = {channel for each, channel in places if each != track}
-    is_alone = len(own) == 1 and own.isdisjoint(others)
-    return f"channel {min(own) + 1}" if is_alone else f"track {track}"

@@ -8,7 +8,7 @@ import math
 import os
 from bisect import insort
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from pathlib import Path
@@ -183,7 +183,10 @@ def concatenate(scores: Sequence[Score]) -> Score:
     events: list[ScoreEvent] = []
     start = 0.0
     for number, score in enumerate(scores, start=1):
-        events += (replace(event, time_s=start + event.time_s) for event in score.events)
+        events += (
+            ScoreEvent(start + event.time_s, event.message, event.beat, event.track)
+            for event in score.events
+        )
         start += score.duration_s
         if number < len(scores):
             events.append(ScoreEvent(start, mido.Message("reset")))

@@ -64,7 +64,7 @@ def octaves_of(notes: Sequence[NoteSpan], rest: float, within: NoteRange = YEHU)
     others = outside = 0
     for phrase in phrases:
         ends = _ends(phrase)
-        own = _best(ends, whole, within) if _outside(ends, whole, within) else whole
+        own = _best(ends, whole, within)
         others += own != whole
         outside += _outside(ends, own, within)
         of_notes += [own] * len(phrase)
@@ -85,6 +85,8 @@ def _best(ends: _Ends, preferred: int, within: NoteRange) -> int:
     def cost(octaves: int) -> tuple[int, int, int]:
         return _outside(ends, octaves, within), abs(octaves - preferred), -octaves
 
+    if not _outside(ends, preferred, within):
+        return preferred
     return min(range(-FARTHEST, FARTHEST + 1), key=cost)
 
 

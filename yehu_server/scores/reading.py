@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from pkgutil import resolve_name
@@ -146,6 +148,13 @@ def read_any(
     has nothing to play, no part of a name, or lasts too long.
     """
     path = Path(path)
+    with _uncollected():
+        return _read(path, options, song, max_duration_h, strict=strict)
+
+
+def _read(
+    path: Path, options: ReadOptions, song: int | None, max_duration_h: float, *, strict: bool
+) -> Score:
     if not is_written(path):
         score = read_score(path, song=song, strict=strict, max_duration_h=max_duration_h)
         with naming(path):
@@ -157,6 +166,18 @@ def read_any(
         if strict and score.warnings:
             raise DamagedError(f"{score.warnings[0]}: refused by --strict")
     return replace(score, name=path.stem)
+
+
+@contextlib.contextmanager
+def _uncollected() -> Iterator[None]:
+    """Let no collector look for garbage among the million objects of a large score."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:

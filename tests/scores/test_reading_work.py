@@ -107,6 +107,14 @@ def test_reading_takes_time_in_proportion(tmp_path, shape):
     assert lines[2] < MOST * lines[1]
 
 
+def test_what_lasts_too_long_is_refused_before_it_is_performed(tmp_path, monkeypatch):
+    monkeypatch.setattr("yehu_server.scores.reading.performed", None)
+    path = tmp_path / "long.abc"
+    path.write_text("X:1\nT:t\nM:4/4\nL:1/1\nK:C\n" + "a|" * 5000)
+    with pytest.raises(YehuError, match=r"long\.abc: the score lasts 3\.33 hours, more than 2"):
+        read_any(path)
+
+
 @pytest.mark.parametrize("unclosed", ["[", "[a", "{", "{a", "[K:", '"', "!", "+", ":", ".", "(3"])
 def test_what_is_never_closed_is_looked_for_once(unclosed):
     def seconds(n: int) -> float:

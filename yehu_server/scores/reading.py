@@ -23,7 +23,7 @@ from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.track import DamagedError
 from yehu_server.scores.written.in_range import default_parts, moved
 from yehu_server.scores.written.notated import Written
-from yehu_server.scores.written.performed import leading_notes, performed
+from yehu_server.scores.written.performed import leading_notes, performed, shortest_s
 from yehu_server.util.files import open_regular
 
 
@@ -161,6 +161,7 @@ def _read(
             return _midi_played(score, options)
     written = read_written(path, song)
     with naming(path):
+        check_duration(shortest_s(written), max_duration_h)  # before it is performed for long
         score = performed_part(written, options)
         check_duration(score.duration_s, max_duration_h)
         if strict and score.warnings:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import mido
+import numpy as np
 import pytest
 from musicxml_text import note, score
 
@@ -10,7 +11,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.octaves import NoteSpan, octaves_of
 from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import notes_of
-from yehu_server.scores.tune_part import melodic_part, take_turns
+from yehu_server.scores.tune_part import OVERLAP, melodic_part, take_turns
 
 LOW = [60, 62, 64, 65, 67]
 
@@ -163,3 +164,27 @@ def test_parts_that_take_turns_are_distinguished_from_parts_that_sound_together(
     assert take_turns([TUNE, sounding(60, 62, begin=8.0), sounding(64, begin=20.0)])
     assert take_turns([TUNE, []])
     assert not take_turns([TUNE, sounding(60, 62, begin=7.0)])
+
+
+def test_turns_are_those_of_each_pair_of_parts():
+    rng = np.random.default_rng(3)
+
+    def together(one, other):
+        ways = (min(a.end, b.end) - max(a.begin, b.begin) for a in one for b in other)
+        return sum(max(0.0, each) for each in ways)
+
+    outcomes = set()
+    for _ in range(200):
+        parts = []
+        for number in range(3):
+            begins, lengths = np.sort(rng.uniform(0, 10, 4)) + 9.0 * number, rng.uniform(0, 2, 4)
+            placed = zip(begins, lengths, strict=True)
+            parts.append([NoteSpan(at, at + length, (60.0,)) for at, length in placed])
+        sounds = [sum(note.end - note.begin for note in part) for part in parts]
+        expected = all(
+            together(parts[a], parts[b]) <= OVERLAP * min(sounds[a], sounds[b])
+            for a, b in ((0, 1), (0, 2), (1, 2))
+        )
+        assert take_turns(parts) == expected
+        outcomes.add(expected)
+    assert outcomes == {True, False}

@@ -180,3 +180,27 @@ def test_kinds_of_faults_are_bounded(read):
     score = read(b"".join(bodies))
     assert len(score.warnings) == 31
     assert score.warnings[-1].startswith("further faults of other kinds, 21 times, first at byte ")
+
+
+def test_what_is_superseded_at_one_tick_is_left_out(tmp_path):
+    bends = b"".join(b"\0\xe0" + bytes([at % 128, 64]) for at in range(1000))
+    volumes = b"\0\xb0\x07\x10\0\xb0\x07\x20"
+    pedals = b"\0\xb0\x40\x7f\0\xb0\x40\0"
+    other = b"\0\xe1\x01\x40"  # of another channel
+    track = bends + volumes + bends + pedals + other + on(0, 60) + bends + off(9, 60) + bends
+    events = read_file(tmp_path, midi(track + END)).events
+    kinds = [getattr(each.message, "control", each.message.type) for each in events]
+    assert kinds == [
+        7, "pitchwheel", 64, 64, "pitchwheel", "note_on", "pitchwheel", "note_off", "pitchwheel"
+    ]  # fmt: skip
+    last = 999 % 128 + 128 * 64 - 8192
+    assert [each.message.pitch for each in events if each.message.type == "pitchwheel"] == [
+        last, 1, last, last
+    ]  # fmt: skip
+    assert events[0].message.value == 0x20
+
+
+def test_what_tracks_move_on_one_channel_stays_in_each(tmp_path):
+    bend = b"\0\xe0\x00\x50"
+    score = read_file(tmp_path, midi(bend + on(0, 60) + END, bend + off(9, 60) + END))
+    assert [each.track for each in score.events if each.message.type == "pitchwheel"] == [1, 2]

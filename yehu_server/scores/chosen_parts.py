@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 
 from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
 from yehu_server.scores.octaves import NoteSpan, octaves_of
-from yehu_server.scores.score import REST_S, Score, ScoreNote, ScorePart, notes_of
+from yehu_server.scores.score import (
+    REST_S,
+    Score,
+    ScoreEvent,
+    ScoreNote,
+    ScorePart,
+    notes_of,
+    transposed,
+)
 from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
@@ -58,10 +67,13 @@ def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
 
     Parts that take turns stay together.
     """
+    if len(score.parts) < 2:
+        return score
     names = [part.name for part in score.parts]
     parts: list[list[NoteSpan]] = [[] for _ in names]
+    find = finder_of(score.parts)
     for note in notes_of(score):
-        at = index_of(score.parts, note.channel, score.events[note.begins].track)
+        at = find(note.channel, score.events[note.begins].track)
         if at is not None:
             parts[at].append(NoteSpan(note.start_s, note.end_s, (float(note.key),)))
     tune = melodic_part(names, parts, within)
@@ -90,12 +102,13 @@ def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
 
 def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
     """A score with the notes of some of its parts alone."""
+    find = finder_of(kept)
     events = (
         event
         for event in score.events
         if event.message.type != "note_on"
         or event.message.velocity == 0
-        or index_of(kept, event.message.channel, event.track) is not None
+        or find(event.message.channel, event.track) is not None
     )
     return replace(score, events=tuple(events), parts=tuple(kept))
 
@@ -106,16 +119,17 @@ def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Sc
     With `is_mpe` the notes of a part are on channels of their own, and all are one part. The range
     is that of `within`.
     """
-    transposed = transposed_keys(score)
+    tuned = transposed_keys(score)
     by_part: dict[str, list[ScoreNote]] = {}
+    find = finder_of(score.parts)
     for note in notes_of(score):
-        at = index_of(score.parts, note.channel, score.events[note.begins].track)
+        at = find(note.channel, score.events[note.begins].track)
         own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
         by_part.setdefault("" if is_mpe else own_name, []).append(note)
     moves: dict[int, int] = {}  # of events, in semitones
     parts = []
     for name, own in by_part.items():
-        pitches = [note.key + transposed.get(note.begins, 0.0) for note in own]
+        pitches = [note.key + tuned.get(note.begins, 0.0) for note in own]
         spans = [NoteSpan(n.start_s, n.end_s, (p,)) for n, p in zip(own, pitches, strict=True)]
         octaves = octaves_of(spans, REST_S, within)
         if octaves.summary:
@@ -130,16 +144,23 @@ def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Sc
         return score
     events = list(score.events)
     for number, by in moves.items():
-        message = events[number].message
-        events[number] = replace(events[number], message=message.copy(note=message.note + by))
+        event = events[number]
+        message = transposed(event.message, by)
+        events[number] = ScoreEvent(event.time_s, message, event.beat, event.track)
     line = line_of([("" if len(by_part) == 1 else name, how) for name, how in parts], within)
     remarks = (*score.remarks, *filter(None, (line,)))
     return replace(score, events=tuple(events), remarks=remarks)
 
 
-def index_of(parts: Sequence[ScorePart], channel: int, track: int) -> int | None:
-    """The number, from 0, of the part that has what a channel plays in a track."""
+def finder_of(parts: Sequence[ScorePart]) -> Callable[[int, int], int | None]:
+    """A function of a channel and a track: the number, from 0, of the part that plays there."""
+    first: dict[tuple[int | None, int | None], int] = {}
     for at, part in enumerate(parts):
-        if part.channel in (channel, None) and part.track in (track, None):
-            return at
-    return None
+        first.setdefault((part.channel, part.track), at)
+
+    @cache
+    def find(channel: int, track: int) -> int | None:
+        places = ((channel, track), (channel, None), (None, track), (None, None))
+        return min((first[place] for place in places if place in first), default=None)
+
+    return find

@@ -7,8 +7,10 @@ who moves each note by itself, as in live playing.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.note_range import YEHU, NoteRange
@@ -17,8 +19,7 @@ FARTHEST = 5  # octaves
 NUMBERS = ("", "an octave", "two octaves", "three octaves", "four octaves", "five octaves")
 
 
-@dataclass(frozen=True)
-class NoteSpan:
+class NoteSpan(NamedTuple):
     """A note to be moved: when it sounds, in any unit, and its pitches (MIDI notes)."""
 
     begin: float
@@ -57,32 +58,43 @@ def octaves_of(notes: Sequence[NoteSpan], rest: float, within: NoteRange = YEHU)
     Notes come in the order of their beginnings. A silence of `rest`, in their unit, parts phrases;
     the instrument has the notes `within`.
     """
-    whole = _best(notes, 0, within)
+    whole = _best(_ends(notes), 0, within)
     phrases = _phrases(notes, rest)
     of_notes: list[int] = []
     others = outside = 0
     for phrase in phrases:
-        own = _best(phrase, whole, within) if _outside(phrase, whole, within) else whole
+        ends = _ends(phrase)
+        own = _best(ends, whole, within)
         others += own != whole
-        outside += _outside(phrase, own, within)
+        outside += _outside(ends, own, within)
         of_notes += [own] * len(phrase)
     return Octaves(tuple(of_notes), whole, len(phrases), others, outside)
 
 
-def _best(notes: Sequence[NoteSpan], preferred: int, within: NoteRange) -> int:
+_Ends = Mapping[tuple[float, float], int]
+
+
+def _ends(notes: Sequence[NoteSpan]) -> _Ends:
+    """How many notes have each lowest and highest pitch; those without a pitch are left out."""
+    return Counter((min(n.pitches), max(n.pitches)) for n in notes if n.pitches)
+
+
+def _best(ends: _Ends, preferred: int, within: NoteRange) -> int:
     """The octaves that leave the fewest notes outside, and of these the nearest to `preferred`."""
 
     def cost(octaves: int) -> tuple[int, int, int]:
-        return _outside(notes, octaves, within), abs(octaves - preferred), -octaves
+        return _outside(ends, octaves, within), abs(octaves - preferred), -octaves
 
+    if not _outside(ends, preferred, within):
+        return preferred
     return min(range(-FARTHEST, FARTHEST + 1), key=cost)
 
 
-def _outside(notes: Sequence[NoteSpan], octaves: int, within: NoteRange) -> int:
+def _outside(ends: _Ends, octaves: int, within: NoteRange) -> int:
     """Number of notes outside the range, when moved by so many octaves."""
     lowest = within.lowest - OPEN_WITHIN - 12.0 * octaves
     highest = within.highest + OPEN_WITHIN - 12.0 * octaves
-    return sum(not all(lowest < pitch < highest for pitch in note.pitches) for note in notes)
+    return sum(count for (low, high), count in ends.items() if not lowest < low <= high < highest)
 
 
 def _phrases(notes: Sequence[NoteSpan], rest: float) -> list[list[NoteSpan]]:

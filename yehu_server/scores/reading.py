@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from pkgutil import resolve_name
@@ -21,7 +23,7 @@ from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.track import DamagedError
 from yehu_server.scores.written.in_range import default_parts, moved
 from yehu_server.scores.written.notated import Written
-from yehu_server.scores.written.performed import leading_notes, performed
+from yehu_server.scores.written.performed import leading_notes, performed, shortest_s
 from yehu_server.util.files import open_regular
 
 
@@ -146,17 +148,37 @@ def read_any(
     has nothing to play, no part of a name, or lasts too long.
     """
     path = Path(path)
+    with _uncollected():
+        return _read(path, options, song, max_duration_h, strict=strict)
+
+
+def _read(
+    path: Path, options: ReadOptions, song: int | None, max_duration_h: float, *, strict: bool
+) -> Score:
     if not is_written(path):
         score = read_score(path, song=song, strict=strict, max_duration_h=max_duration_h)
         with errors_name(path):
             return _midi_played(score, options)
     written = read_written(path, song)
-    with errors_name(path):
+    with naming(path):
+        check_duration(shortest_s(written), max_duration_h)  # before it is performed for long
         score = performed_part(written, options)
         check_duration(score.duration_s, max_duration_h)
         if strict and score.warnings:
             raise DamagedError(f"{score.warnings[0]}: refused by --strict")
     return replace(score, name=path.stem)
+
+
+@contextlib.contextmanager
+def _uncollected() -> Iterator[None]:
+    """Let no collector look for garbage among the million objects of a large score."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
@@ -183,11 +205,13 @@ def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
 def _midi_played(score: Score, options: ReadOptions) -> Score:
     is_mpe = options.is_mpe or chosen_parts.says_mpe(score)
     tune = score if is_mpe else chosen_parts.default_midi_part(score)
-    score = replace(score, delays=midi_delays(score, tune))
+    delays = midi_delays(score, tune)
     if options.parts:
         score = chosen_parts.parts_chosen(score, options.parts)
     elif len(score.parts) > 1 and not (options.all_parts or is_mpe):
-        score = chosen_parts.default_midi_part(score, options.within)
+        is_usual = options.within == YEHU
+        score = tune if is_usual else chosen_parts.default_midi_part(score, options.within)
+    score = replace(score, delays=delays)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
         return replace(score, remarks=(*score.remarks, line))

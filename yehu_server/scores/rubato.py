@@ -34,10 +34,14 @@ def midi_delays(score: Score, tune: Score) -> Delays:
 
     `tune` has the notes of the part that leads.
     """
-    notes, leading = (
-        [n for n in notes_of(s) if n.channel != PERCUSSION_CHANNEL] for s in (score, tune)
-    )
-    return delays_of(leading) if is_in_time(notes) else ()
+    notes = _melodic(score)
+    if not is_in_time(notes):
+        return ()
+    return delays_of(notes if tune is score else _melodic(tune))
+
+
+def _melodic(score: Score) -> list[ScoreNote]:
+    return [note for note in notes_of(score) if note.channel != PERCUSSION_CHANNEL]
 
 
 def is_in_time(notes: Sequence[ScoreNote]) -> bool:

@@ -8,10 +8,11 @@ import math
 import os
 from bisect import insort
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import mido
 
@@ -182,7 +183,10 @@ def concatenate(scores: Sequence[Score]) -> Score:
     events: list[ScoreEvent] = []
     start = 0.0
     for number, score in enumerate(scores, start=1):
-        events += (replace(event, time_s=start + event.time_s) for event in score.events)
+        events += (
+            ScoreEvent(start + event.time_s, event.message, event.beat, event.track)
+            for event in score.events
+        )
         start += score.duration_s
         if number < len(scores):
             events.append(ScoreEvent(start, mido.Message("reset")))
@@ -195,8 +199,7 @@ def concatenate(scores: Sequence[Score]) -> Score:
     return Score(tuple(events), start, names, tuple(warnings), metre, parts, tuple(remarks))
 
 
-@dataclass(frozen=True)
-class ScoreNote:
+class ScoreNote(NamedTuple):
     """A note of a score, with the numbers of its events; times in seconds."""
 
     # Numbers of its note-on and its note-off; `ends` is -1 where nothing ends it.
@@ -224,12 +227,13 @@ def notes_of(score: Score) -> list[ScoreNote]:
     ends: dict[int, int] = {}  # by the number of a note-on
     for number, event in enumerate(score.events):
         message = event.message
-        if message.type not in ("note_on", "note_off"):
+        kind = message.type
+        if kind not in ("note_on", "note_off"):
             continue
         key = (message.channel, message.note)
         if key in held:
             ends[held.pop(key)] = number
-        if message.type == "note_on" and message.velocity > 0:
+        if kind == "note_on" and message.velocity > 0:
             held[key] = number
             ends[number] = -1
     found = []
@@ -241,9 +245,20 @@ def notes_of(score: Score) -> list[ScoreNote]:
     return found
 
 
+def transposed(message: mido.Message, by: int) -> mido.Message:
+    """A note-on or note-off so many semitones higher."""
+    return _note(message.type, message.channel, message.note + by, message.velocity)
+
+
+@lru_cache(maxsize=1 << 16)
+def _note(kind: str, channel: int, note: int, velocity: int) -> mido.Message:
+    """A message, cached and never changed, as mido checks each for long."""
+    return mido.Message(kind, channel=channel, note=note, velocity=velocity)
+
+
 # A phrase ends with a rest, with a note that lasts much longer than those about it, or when it is
 # this long.
-REST_S, LONG_NOTE, LONGEST_PHRASE_BEATS = 0.3, 2.5, 16.0
+REST_S, LONG_NOTE, LONGEST_PHRASE_BEATS, MAX_NOTES = 0.3, 2.5, 16.0, 4096
 
 
 def phrases_of(notes: Iterable[ScoreNote]) -> list[list[ScoreNote]]:
@@ -263,7 +278,7 @@ def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote)
     last = phrase[-1]
     if note.start_s - last.end_s >= REST_S:
         return True
-    if note.beat - phrase[0].beat >= LONGEST_PHRASE_BEATS:
+    if note.beat - phrase[0].beat >= LONGEST_PHRASE_BEATS or len(phrase) >= MAX_NOTES:
         return True
     median_s = lengths[len(lengths) // 2]
     return len(phrase) > 3 and last.length_s > LONG_NOTE * median_s

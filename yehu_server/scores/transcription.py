@@ -23,7 +23,7 @@ from yehu_server.core.player.parameter_indices import VELOCITY
 from yehu_server.errors import ScoreError
 from yehu_server.playing.sources import RESERVED
 from yehu_server.scores.capture import Capture, read_capture
-from yehu_server.scores.chosen_parts import index_of, says_mpe
+from yehu_server.scores.chosen_parts import finder_of, says_mpe
 from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
 from yehu_server.scores.score import (
@@ -97,9 +97,9 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
     by_frames = any(math.isnan(note.beat) for note in notes)
     names = (ScorePart(""),) if says_mpe(score) or not score.parts else score.parts
     voices: list[tuple[str, list[PlayedNote]]] = [(part.name, []) for part in names]
+    find = finder_of(names)
     for note in notes:
-        track = score.events[note.begins].track
-        at = index_of(names, note.channel, track)
+        at = find(note.channel, score.events[note.begins].track)
         if at is not None:
             end = score.events[note.ends].beat if note.ends >= 0 else note.beat + 1.0
             begin, end = (note.start_s, note.end_s) if by_frames else (note.beat, end)

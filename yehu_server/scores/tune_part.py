@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from itertools import pairwise
+from operator import itemgetter
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.scores.octaves import NoteSpan, octaves_of
@@ -23,6 +24,7 @@ IN_RANGE = 0.9  # of its notes, moved by octaves as a whole
 TOGETHER, MAX_TOGETHER = 0.02, 0.15  # quarters or seconds apart, and share of notes: chords
 REPEATED = 0.8  # share of notes equal to the one before, from which a part is an accompaniment
 OVERLAP = 0.05  # of the shorter part's sound, from which two parts sound at once
+MAX_PAIRS = 1_000_000  # of notes that overlap, in parts that take turns
 
 
 def melodic_part(
@@ -43,11 +45,27 @@ def melodic_part(
 
 def take_turns(parts: Sequence[Sequence[NoteSpan]]) -> bool:
     """Whether no two of the parts sound at once, so that one instrument can play them all."""
-    return not any(
-        _together(one, other) > OVERLAP * min(_sounds(one), _sounds(other))
-        for at, one in enumerate(parts)
-        for other in parts[at + 1 :]
-    )
+    sounds = [*map(_sounds, parts)]
+    if sum(sound > 0.0 for sound in sounds) < 2:
+        return True
+    placed = [(note.begin, note.end, at) for at, notes in enumerate(parts) for note in notes]
+    shared: dict[tuple[int, int], float] = {}  # by pair of parts, for how long notes of both sound
+    held: list[tuple[float, int]] = []  # ends and parts of notes that sound
+    pairs = 0
+    for begin, end, at in sorted(placed, key=itemgetter(0)):
+        held = [each for each in held if each[0] > begin]
+        pairs += len(held)
+        if pairs > MAX_PAIRS:
+            return False
+        for until, other in held:
+            if at != other:
+                pair = (at, other) if at < other else (other, at)
+                shared[pair] = shared.get(pair, 0.0) + min(end, until) - begin
+                if shared[pair] > OVERLAP * min(sounds[at], sounds[other]):
+                    return False
+        if end > begin:
+            held.append((end, at))
+    return True
 
 
 def _sounds(notes: Sequence[NoteSpan]) -> float:
@@ -67,16 +85,3 @@ def _is_tune(notes: Sequence[NoteSpan], longest: float, within: NoteRange) -> bo
         and same <= REPEATED * len(pitches)
         and octaves.outside <= (1.0 - IN_RANGE) * len(notes)
     )
-
-
-def _together(one: Sequence[NoteSpan], other: Sequence[NoteSpan]) -> float:
-    """For how long notes of both sound, of parts in the order of their beginnings."""
-    together, at = 0.0, 0
-    for note in one:
-        while at < len(other) and other[at].end <= note.begin:
-            at += 1
-        for each in other[at:]:
-            if each.begin >= note.end:
-                break
-            together += max(0.0, min(note.end, each.end) - max(note.begin, each.begin))
-    return together

@@ -14,7 +14,7 @@ from yehu_server.scores.abc.vocabulary import DECORATIONS, IGNORED, JUMPS, WEDGE
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
-from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
+from yehu_server.scores.written.repeats import MAX_BARS, MAX_TIMES, BarLines
 from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
@@ -26,13 +26,13 @@ MAX_BARS_REST = 1000
 LENGTH = r"\d*/*\d*"
 NOTE = rf"(\^\^|\^|__|_|=)?([A-Ga-g])([',]*)({LENGTH})(-?)"
 TOKEN = re.compile(
-    rf"""(?P<field>\[[A-Za-z]:[^\]]*\])
+    rf"""(?P<field>\[[A-Za-z]:[^\]]{{0,255}}\])
 |(?P<bar>\.?(?::*\[?\|[|\]]*:*|::+))(?P<number>[1-9][\d,\-]*)?
 |(?P<ending>\[[1-9][\d,\-]*)
 |(?P<text>"[^"]*")
 |(?P<sign>![^!|\s]+!|\+[^+|\s]+\+)
-|(?P<chord>\[[^\]|]*\])(?P<chord_length>{LENGTH})(?P<chord_tie>-?)
-|(?P<grace>\{{[^}}]*\}})
+|(?P<chord>\[[^\[\]|]*\])(?P<chord_length>{LENGTH})(?P<chord_tie>-?)
+|(?P<grace>\{{[^{{}}]*\}})
 |(?P<note>{NOTE})
 |(?P<rest>[zx])(?P<rest_length>{LENGTH})
 |(?P<bars>[ZX])(?P<bars_count>\d*)
@@ -214,9 +214,7 @@ class VoiceReader:
 
     def _add(self, notes: list[RawNote], length: Fraction) -> None:
         """Put a note, or a rest, where the music is."""
-        self._count += 1
-        if self._count > MAX_NOTES:
-            raise ScoreError(f"has more than {MAX_NOTES} notes")
+        self._count_note()
         length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
         self._next_factor = Fraction(1)
         length = min(length, Fraction(LONGEST))
@@ -226,6 +224,11 @@ class VoiceReader:
             if length > 0:
                 self._bar.notes.append(note)
         self._at += length
+
+    def _count_note(self) -> None:
+        self._count += 1
+        if self._count > MAX_NOTES:
+            raise ScoreError(f"has more than {MAX_NOTES} notes")
 
     def _chord(self, found: re.Match[str]) -> None:
         inner = list(re.finditer(NOTE, found["chord"]))
@@ -238,6 +241,7 @@ class VoiceReader:
 
     def _graces(self, text: str) -> None:
         for each in re.finditer(NOTE, text):
+            self._count_note()
             pitch, _ = self._pitched(*each.groups()[:4])
             self._bar.notes.append(
                 RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
@@ -331,6 +335,8 @@ class VoiceReader:
             bar.length = self._at
             bar.number = str(len(self.bars) + 1)
             self.bars.append(bar)
+            if len(self.bars) > MAX_BARS:
+                raise ScoreError(f"has more than {MAX_BARS} bars")
             self._bar = RawBar("", BarLines(endings=self._ending))
             self._at = self._last_begin = Fraction(0)
             self._in_bar = {}

@@ -51,6 +51,8 @@ from yehu_server.scores.smf.tunings import retuned
 ENDS_ALL = {120, *range(123, 128)}
 MAX_BYTES = 64 * 2**20
 MAX_REST_S = 30  # between the last message and the end of a track
+# Of a state that the last value alone decides: no pedals, selections and modes.
+CONTINUOUS = {1, 2, 4, 7, 8, 10, 11, *range(16, 20), *range(70, 80), *range(91, 96)}
 _Song = tuple[list[Track], int, int]  # what sounds together, number of the first, the division
 
 MOD_WHEEL = 1  # controller
@@ -78,6 +80,39 @@ def ended(messages: Sequence[Placed], faults: DamageReport) -> list[Placed]:
             off = mido.Message("note_off", channel=message.channel, note=message.note)
             added.append((later[place], off, at))
     return sorted([*added, *messages], key=itemgetter(0))  # stable: before the next note
+
+
+def settled(messages: Sequence[Placed], starts: Sequence[int]) -> list[Placed]:
+    """Return messages without those that another one at the same tick supersedes.
+
+    Of a bend, a pressure or a continuous controller only the last value is heard, where no message
+    of another kind lies between. `starts` are the bytes at which the tracks begin.
+    """
+    kept: list[Placed | None] = []
+    last: dict[tuple[str, int, int, int], int] = {}  # by what is moved, a place in `kept`
+    before = -1
+    for placed in messages:
+        tick, message, at = placed
+        if tick != before and last:
+            last.clear()
+        before = tick
+        kind = message.type
+        number = 0
+        if kind == "control_change":
+            number = message.control
+        elif kind == "polytouch":
+            number = message.note
+        if kind in ("pitchwheel", "aftertouch", "polytouch") or (
+            kind == "control_change" and number in CONTINUOUS
+        ):
+            source = kind, message.channel, number, bisect_right(starts, at)
+            if source in last:
+                kept[last[source]] = None
+            last[source] = len(kept)
+        elif last:
+            last.clear()
+        kept.append(placed)
+    return [placed for placed in kept if placed is not None]
 
 
 def _held(messages: Sequence[Placed]) -> list[Placed]:
@@ -108,8 +143,9 @@ def read_score(
     Formats 0 and 1 play all tracks together under the tempo changes of all of them. Format 2 plays
     its tracks one after another, as `concatenate` would, each starting at 120 bpm with tempo
     changes of its own. Files that were joined play in turn too. Sysex other than tuning, escapes,
-    and metas other than tempo, signatures of time and key, and names of tracks are dropped. A
-    channel message with a data byte above 127 is dropped as a whole. `song` is the only one to
+    metas other than tempo, signatures of time and key, and names of tracks, and what is superseded
+    at its own tick (`settled`) are dropped. A channel message with a data byte above 127 is dropped
+    as a whole. `song` is the only one to
     play, from 1, of those that play one after another; `strict` refuses a file with any damage.
     Raises DamagedError with `strict`: one line naming the file, its first damage and the byte of
     that; ScoreError, one line naming the file, whatever its bytes: missing, unreadable, too large
@@ -173,7 +209,8 @@ def _play_together(
     # Sorting is stable: at one tick, the order of the tracks and within them stays.
     tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
     messages = sorted((placed for track in tracks for placed in track.messages), key=itemgetter(0))
-    messages = without_resting_wheels(ended(messages, faults))
+    starts = [track.start_at for track in tracks]  # a message's byte is within its track
+    messages = without_resting_wheels(ended(settled(messages, starts), faults))
     clock = Clock(division, tempos)
     last = max(tracks, key=lambda track: track.end)
     end_s = clock.seconds(last.end)
@@ -185,13 +222,7 @@ def _play_together(
         check_duration(end_s, max_duration_h)
     except ScoreError as error:
         raise ScoreError(f"{error}{_longest_rest(tracks, clock, end_s)}") from None
-    starts = [track.start_at for track in tracks]  # a message's byte is within its track
-    events = tuple(
-        ScoreEvent(
-            clock.seconds(tick), message, clock.beat(tick), first - 1 + bisect_right(starts, at)
-        )
-        for tick, message, at in messages
-    )
+    events = _events(messages, clock, starts, first)
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
     metres = [Metre(clock.beat(tick), quarters) for tick, quarters in signatures]
     tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
@@ -226,6 +257,20 @@ def without_resting_wheels(messages: Sequence[Placed]) -> list[Placed]:
     return [placed for placed in messages if not is_wheel(placed[1]) or placed[1].channel in moved]
 
 
+def _events(
+    messages: Sequence[Placed], clock: Clock, starts: Sequence[int], first: int
+) -> tuple[ScoreEvent, ...]:
+    """Messages at their times; each is of the track within whose bytes it lies."""
+    events: list[ScoreEvent] = []
+    before, seconds, beat = -1, 0.0, 0.0
+    for tick, message, at in messages:
+        if tick != before:
+            before, seconds, beat = tick, clock.seconds(tick), clock.beat(tick)
+        track = first - 1 + bisect_right(starts, at)
+        events.append(ScoreEvent(seconds, message, beat, track))
+    return tuple(events)
+
+
 def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:
     """The key signatures that change something; of several at a tick the first that is not C.
 
@@ -253,7 +298,17 @@ def _parts(places: set[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePa
     tracks = sorted({track for track, _ in places})
     channels = sorted({channel for _, channel in places})
     if len(tracks) > 1:
-        named = [(names.get(track) or _unnamed(track, places), track) for track in tracks]
+        by_track, by_channel = defaultdict(set), defaultdict(set)
+        for track, channel in places:
+            by_track[track].add(channel)
+            by_channel[channel].add(track)
+
+        def unnamed(track: int) -> str:
+            own = min(by_track[track])
+            is_alone = len(by_track[track]) == len(by_channel[own]) == 1
+            return f"channel {own + 1}" if is_alone else f"track {track}"
+
+        named = [(names.get(track) or unnamed(track), track) for track in tracks]
         found = [ScorePart(name, track=track) for name, track in named]
     else:
         alone = names.get(tracks[0], "") if len(channels) == 1 else ""
@@ -263,10 +318,3 @@ def _parts(places: set[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePa
         replace(part, name=f"{part.name} ({part.track})") if counts[part.name] > 1 else part
         for part in found
     )
-
-
-def _unnamed(track: int, places: set[tuple[int, int]]) -> str:
-    own = {channel for each, channel in places if each == track}
-    others = {channel for each, channel in places if each != track}
-    is_alone = len(own) == 1 and own.isdisjoint(others)
-    return f"channel {min(own) + 1}" if is_alone else f"track {track}"

@@ -168,6 +168,16 @@ class _Cursor:
             raise EOFError
         return self.data[self.pos] >= 0x80
 
+    def status(self, running: int) -> int:
+        """The status byte here; without one, the running one."""
+        if self.pos >= self.end:
+            raise EOFError
+        byte = self.data[self.pos]
+        if byte < 0x80:
+            return running
+        self.pos += 1
+        return byte
+
     def skip_to_status(self) -> None:
         found = STATUS.search(self.data, self.pos, self.end)
         if found is None:
@@ -206,13 +216,26 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
     try:
         while cursor.pos < stop and track.events <= room:
             at = cursor.pos
-            delta = cursor.number(faults)
+            delta = data[at]
+            if delta < 0x80:  # as most are
+                cursor.pos += 1
+            else:
+                delta = cursor.number(faults)
             tick += delta
             if not running and not cursor.at_status():
                 faults.add("data without a status byte skipped", cursor.pos)
                 cursor.skip_to_status()
-            status = cursor.byte() if cursor.at_status() else running
-            if status == META:
+            status = cursor.status(running)
+            if status < SYSEX:
+                running = status
+                body = cursor.take(1 if status & 0xE0 == 0xC0 else 2)
+                if body.isascii():  # no byte above 127
+                    track.messages.append((tick, _message(status, body), at))
+                else:
+                    # Dropped at its full length: mostly this is a velocity above 127, and the
+                    # next message is intact.
+                    faults.add("a damaged message dropped", at)
+            elif status == META:
                 kind = cursor.byte()
                 body = cursor.take(cursor.number(faults))
                 if kind == END_OF_TRACK:
@@ -223,18 +246,9 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
                 body = cursor.take(cursor.number(faults))
                 if status == SYSEX and is_tuning(body) and len(track.tunings) < MAX_MESSAGES:
                     track.tunings.append((tick, body))
-            elif status > SYSEX:
+            else:
                 faults.add("a system message, which no file should hold, skipped", at)
                 cursor.take(SYSTEM_DATA_BYTES.get(status, 0))
-            else:
-                running = status
-                body = cursor.take(1 if status & 0xE0 == 0xC0 else 2)
-                if max(body) < 0x80:
-                    track.messages.append((tick, _message(status, body), at))
-                else:
-                    # Dropped at its full length: mostly this is a velocity above 127, and the
-                    # next message is intact.
-                    faults.add("a damaged message dropped", at)
             track.end, track.end_at = tick, at
             if delta > track.longest[0]:
                 track.longest = delta, tick, at

@@ -11,6 +11,7 @@ from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 
 from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 
@@ -161,14 +162,17 @@ class Note:
     # and of semitones from `pitch`, joined by straight lines. Empty: it stays.
     contour: tuple[tuple[float, float], ...] = ()
 
-    @property
+    @cached_property
     def end(self) -> Fraction:
         """The beat at which it ends."""
         return self.beat + self.length
 
     def marked(self, name: str) -> Mark | None:
         """The mark of a name, if it has one."""
-        return next((mark for mark in self.marks if mark.name == name), None)
+        for mark in self.marks:
+            if mark.name == name:
+                return mark
+        return None
 
 
 @dataclass(frozen=True)

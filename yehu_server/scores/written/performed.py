@@ -90,6 +90,12 @@ def performed(
     )
 
 
+def shortest_s(written: Written) -> float:
+    """The length (s) of the shortest part, as written: none is played in less."""
+    ends = [part.notes[-1].end for part in written.parts if part.notes]
+    return WrittenClock(written).seconds(min(ends, default=0))
+
+
 def leading_notes(written: Written, number: int) -> list[ScoreNote]:
     """The notes of a part, by its number from 0, as they are written: all others follow it.
 

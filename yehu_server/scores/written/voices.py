@@ -137,7 +137,8 @@ class Voice:
         """End what still sounds: one note at a time."""
         while self.notes and self.notes[-1].end > beat:
             last = self.notes.pop()
-            self._tied = {pitch: at for pitch, at in self._tied.items() if at < len(self.notes)}
+            if self._tied.get(last.pitch) == len(self.notes):
+                del self._tied[last.pitch]
             if last.beat < beat:
                 self.notes.append(replace(last, length=beat - last.beat))
 

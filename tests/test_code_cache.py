@@ -328,3 +328,10 @@ def test_folders_of_older_sources_are_removed_and_no_others(own_folder):
         os.utime(folder, (0.0, 0.0))
     cache_folder._open_cache()
     assert sorted(own_folder.parent.iterdir()) == sorted([own_folder, other])
+
+
+def test_without_a_folder_to_keep_code_in_it_is_compiled_all_the_same(tmp_path):
+    (tmp_path / "file").touch()
+    code = "from yehu_server.core.engine.native import publish; assert publish.address"
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "file")}
+    subprocess.run([sys.executable, "-c", code], env=environment, check=True)

@@ -14,8 +14,8 @@ from contextlib import contextmanager
 import numba
 import pytest
 
+from yehu_server.compile import cache_folder, jit, levels, machine_code, numba_compiler
 from yehu_server.compile import function_cache as cache
-from yehu_server.compile import jit, levels, numba_compiler
 from yehu_server.util import checksummed
 from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 
@@ -289,3 +289,49 @@ def test_a_part_of_other_functions_is_kept_without_machine_code(kept, monkeypatc
         assert kept.start(function) == (result, False)
         assert sum(third.value.stats.cache_hits.values()) == hits
     assert not list(kept.folder.glob("*third_of*.code"))
+
+
+# ---------------------------------------------------------------- the folder
+
+
+@pytest.fixture
+def own_folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert cache_folder._open_cache() == ""
+    return cache_folder.cache_folder()
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no users")
+def test_nothing_is_read_from_a_folder_of_another_user_or_that_all_may_write_to(
+    own_folder, monkeypatch, caplog
+):
+    own_folder.chmod(0o777)
+    assert cache_folder._open_cache() == cache_folder.OTHERS
+    own_folder.chmod(0o755)
+    if (user := os.getuid()) == 0:
+        os.chown(own_folder, 1234, -1)
+    else:
+        monkeypatch.setattr(os, "getuid", lambda: user + 1)
+    assert cache_folder._open_cache() == cache_folder.OTHERS
+    machine_code.file_in(own_folder).write_bytes(b"not ours")
+    monkeypatch.setattr(machine_code, "SHIPPED", own_folder / "none")
+    for is_trusted in (False, True):
+        monkeypatch.setattr(cache_folder, "IS_TRUSTED", is_trusted)
+        assert machine_code.loaded.__wrapped__(own_folder, "") == {}
+        assert ("it is damaged" in caplog.text) == is_trusted
+
+
+def test_folders_of_older_sources_are_removed_and_no_others(own_folder):
+    old, other = (own_folder.with_name(f"compiled-{name}") for name in ("0" * 16, "photos"))
+    for folder in (old, other):
+        folder.mkdir()
+        os.utime(folder, (0.0, 0.0))
+    cache_folder._open_cache()
+    assert sorted(own_folder.parent.iterdir()) == sorted([own_folder, other])
+
+
+def test_without_a_folder_to_keep_code_in_it_is_compiled_all_the_same(tmp_path):
+    (tmp_path / "file").touch()
+    code = "from yehu_server.core.engine.native import publish; assert publish.address"
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "file")}
+    subprocess.run([sys.executable, "-c", code], env=environment, check=True)

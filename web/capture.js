@@ -169,7 +169,7 @@ export function checked(performance) {
 /**
  * What is played of a performance that came from elsewhere: its notes and gestures. What it would hold would
  * outlive it, its ramps go past the player, and what is a server's own (`isServers`), its instrument, room and
- * output, is its owner's.
+ * output, is its owner's. It frees nothing that is held, and ends no notes of others at a server.
  * @param {Performance} performance
  * @param {boolean} isServers whether a server plays it
  * @returns {{played: Performance, leftOut: number}} and the number of settings that are left out
@@ -177,13 +177,17 @@ export function checked(performance) {
 export function notesAndGestures({ values, commands, ...rest }, isServers) {
   /** @param {import('./playing/table.js').Param} param */
   const isFree = ({ isOwners }) => !(isServers && isOwners);
+  const brings = commands.filter(
+    ({ kind, index }) =>
+      kind !== HOLD && kind !== RAMP && (!OF_PARAMETERS.includes(kind) || isFree(TABLE[index])),
+  );
   const played = {
     ...rest,
     values: Object.fromEntries(Object.entries(values).filter(([address]) => isFree(find(address)))),
-    commands: commands.filter(
-      ({ kind, index }) =>
-        kind !== HOLD && kind !== RAMP && (!OF_PARAMETERS.includes(kind) || isFree(TABLE[index])),
-    ),
+    commands: brings.map((command) => {
+      if (command.kind === RELEASE) return { ...command, value: 1 };
+      return command.kind === STOP && isServers ? { ...command, value: 0 } : command;
+    }),
   };
   // A value that it has by itself brings nothing.
   const brought = Object.keys(values).filter(

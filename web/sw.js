@@ -2,11 +2,13 @@
  * Keeps the whole page for times without a network. `yehu-server page` writes which files there are,
  * and a name for all that they hold; a copy of the page that has none keeps nothing.
  *
- * Each version is kept whole, and served until no window shows it any more: versions never mix.
+ * Each version is kept whole, and served until no window shows it any more: versions never mix, and nothing
+ * is kept that is not of this one, such as the page of a network that wants a login, or a file that is not
+ * copied yet. Where nothing can be kept the page comes from the network.
  */
 
 const VERSION = "";
-/** @type {string[]} */
+/** Names, and what each holds (Subresource Integrity). @type {[string, string][]} */
 const FILES = [];
 
 const worker = /** @type {any} */ (globalThis);
@@ -15,7 +17,9 @@ const OWN = PREFIX + VERSION;
 
 worker.addEventListener("install", (/** @type {any} */ event) => {
   if (!VERSION) return;
-  const requests = FILES.map((file) => new Request(file, { cache: "no-cache" }));
+  const requests = FILES.map(
+    ([file, integrity]) => new Request(file, { cache: "no-cache", integrity }),
+  );
   event.waitUntil(caches.open(OWN).then((cache) => cache.addAll(requests)));
 });
 
@@ -30,8 +34,8 @@ worker.addEventListener("activate", (/** @type {any} */ event) => {
 worker.addEventListener("fetch", (/** @type {any} */ event) => {
   if (!VERSION || event.request.method !== "GET") return;
   const find = async () => {
-    const cache = await caches.open(OWN);
-    const kept = await cache.match(event.request, { ignoreSearch: true });
+    const cache = await caches.open(OWN).catch(() => null);
+    const kept = await cache?.match(event.request, { ignoreSearch: true }).catch(() => null);
     return kept ?? fetch(event.request);
   };
   event.respondWith(find());

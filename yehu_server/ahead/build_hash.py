@@ -34,18 +34,18 @@ def with_section(module: bytes, text: str) -> bytes:
 
 
 def section_of(module: bytes) -> str:
-    """The text of a module's custom section; empty where there is none, or a byte is wrong."""
+    """The text of a module's last section; empty where that is not ours, or a byte is wrong."""
     at = len(PREAMBLE)
     if not module.startswith(PREAMBLE):
         return ""
-    text, checksum, begin = "", "", 0
+    text, checksum, begin = "", "", at
     while at < len(module):
-        kind, start = module[at], at
+        text, checksum, begin = "", "", at
+        kind = module[at]
         size, at = _read_leb128(module, at + 1)
         body = module[at : at + size]
         if kind == CUSTOM and body[1 : 1 + len(NAME)] == NAME and body[:1] == bytes((len(NAME),)):
             text, _, checksum = body[1 + len(NAME) :].decode("utf-8", "replace").rpartition(" ")
-            begin = start
         at += size
     is_whole = at == len(module) and checksum == _checksum(module[:begin], text)
     return text if is_whole else ""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import errno
 import os
 import shutil
+import stat
 import time
 from functools import cache
 from importlib.metadata import version
@@ -19,7 +20,7 @@ from platformdirs import user_cache_dir
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of
 
-PREFIX = "compiled-"
+PREFIX, DIGIT = "compiled-", "[0-9a-f]"
 UNUSED_AFTER_S = 14 * 24 * 3600.0
 # Of all source that is compiled, or that compiled code reads constants of.
 SOURCE_FOLDERS = ("core", "params", "compile")
@@ -64,13 +65,26 @@ def data_folder() -> Path:
     return cache_folder().parent
 
 
+OTHERS = "others may write there, and its code would be run"
+
+
+def _is_others(folder: Path) -> bool:
+    """Whether another user, but for root, may write to a folder."""
+    status = folder.stat()
+    if not hasattr(os, "getuid"):
+        return False
+    return status.st_uid not in (0, os.getuid()) or bool(status.st_mode & stat.S_IWOTH)
+
+
 def _open_cache() -> str:
     """Make the cache folder and drop what older sources left; return why nothing can be kept."""
     folder = cache_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        if _is_others(folder):
+            return OTHERS
         os.utime(folder)
-        for other in folder.parent.glob(f"{PREFIX}*"):
+        for other in folder.parent.glob(PREFIX + 16 * DIGIT):
             if time.time() - other.stat().st_mtime > UNUSED_AFTER_S:
                 shutil.rmtree(other, ignore_errors=True)
     except OSError as error:
@@ -79,4 +93,5 @@ def _open_cache() -> str:
 
 
 WHY_NOT_CACHED = _open_cache()
+IS_TRUSTED = WHY_NOT_CACHED != OTHERS  # else nothing there is read either
 IS_CACHED = not WHY_NOT_CACHED  # else everything is compiled anew at each start

@@ -104,7 +104,8 @@ def loaded(folder: Path, sources: str, what: str = PLAYING) -> dict[str, int]:
 
     It is empty where they have to be compiled. `sources`: key of the source they were made from.
     """
-    for path in (file_in(folder, what), file_in(SHIPPED, what)):
+    for place in (folder, SHIPPED) if cache_folder.IS_TRUSTED else (SHIPPED,):
+        path = file_in(place, what)
         try:
             payload = read_checksummed(path)
             if payload is None:

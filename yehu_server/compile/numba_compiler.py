@@ -92,6 +92,7 @@ class ColdPartCompiler(SourceCompiler):
 def type_of(deferred: jit.Deferred) -> Any:
     """numba's type of what a deferred value stands for."""
     value, typing = deferred.value, cpu_target.typing_context
+    cpu_target.target_context.refresh()  # which imports what numba itself defines
     typing.refresh()  # numba knows only then of an intrinsic that is new
     return typing.resolve_value_type(value)
 

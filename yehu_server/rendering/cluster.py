@@ -181,7 +181,7 @@ class Cluster:
                 return Event(job, 1.0, died=f"ended by {value}")
             return Event(job, 1.0, result=value)
         error = future.exception()
-        known: Any = getattr(error, "args", ())
+        known: tuple[Any, ...] = getattr(error, "args", ())
         is_killed = type(error).__name__ == "KilledWorker" and len(known) == 3
         if is_killed and isinstance(known[2], int):
             return Event(job, 1.0, died=f"killed on {known[2] + 1} workers")

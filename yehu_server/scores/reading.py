@@ -160,7 +160,7 @@ def _read(
         with errors_name(path):
             return _midi_played(score, options)
     written = read_written(path, song)
-    with naming(path):
+    with errors_name(path):
         check_duration(shortest_s(written), max_duration_h)  # before it is performed for long
         score = performed_part(written, options)
         check_duration(score.duration_s, max_duration_h)

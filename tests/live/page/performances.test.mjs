@@ -17,7 +17,7 @@ const { default: facts } = await import(new URL("facts.js", web).href);
 const { checked, notesAndGestures, readCapture } = await import(new URL("capture.js", web).href);
 const { linkOf, readLink } = await import(new URL("link.js", web).href);
 
-const { RAMP, WRITE, HOLD, BEGIN, EXPRESS, END } = facts.kinds;
+const { RAMP, WRITE, HOLD, BEGIN, EXPRESS, END, RELEASE, STOP } = facts.kinds;
 const RATE = 1000;
 
 function performance(commands) {
@@ -66,6 +66,14 @@ test("of what is brought notes and gestures are played, and what is left out is 
   const here = notesAndGestures(brought, false);
   assert.deepEqual(here.played.commands, [...settings.slice(2), ...gestures]);
   assert.deepEqual(here.played.values, brought.values);
+});
+
+test("what is brought frees nothing that is held and ends no notes of others", () => {
+  const of = (kind, value) => ({ frame: 0, kind, index: 0, value, other: 0 });
+  const brought = performance([of(RELEASE, 0), of(STOP, 1)]);
+  const atServer = notesAndGestures(brought, true);
+  assert.deepEqual(atServer.played.commands, [of(RELEASE, 1), of(STOP, 0)]);
+  assert.deepEqual(notesAndGestures(brought, false).played.commands, [of(RELEASE, 1), of(STOP, 1)]);
 });
 
 test("what is no performance is refused, soon", async () => {

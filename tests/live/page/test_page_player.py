@@ -205,3 +205,7 @@ def test_performances_in_links_and_files_are_bounded_and_reach_nothing_but_the_s
 ):
     many = "2000" if everything else "200"
     run_node("--test", "performances.test.mjs", WEB=str(page), MANY=many)
+
+
+def test_the_service_worker_keeps_what_it_knows_and_needs_no_store(run_node, page):
+    run_node("--test", "worker.test.mjs", WEB=str(page))

@@ -94,6 +94,9 @@ def test_a_module_with_any_bit_wrong_is_none_of_these_sources(shipped, tmp_path)
         for size in range(len(whole)):
             path.write_bytes(whole[:size])
             taken += [size] if build._found(kept.parent) == path else []
+        for more in (bytes(100), code, whole):
+            path.write_bytes(whole + more)
+            taken += [more] if build._found(kept.parent) == path else []
         assert not taken, path
 
 

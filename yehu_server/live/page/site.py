@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import gzip
 import hashlib
 import json
@@ -170,11 +171,17 @@ def write_page(folder: Path) -> list[Path]:
 
 def _write_worker(folder: Path, files: list[Path]) -> None:
     """Write into the service worker which files it keeps, and a version that changes with them."""
-    version = hashlib.sha256(b"".join((folder / file).read_bytes() for file in files))
-    names = json.dumps(["./", *(file.as_posix() for file in files)])
+    data = {file.as_posix(): (folder / file).read_bytes() for file in files}
+    version = hashlib.sha256(b"".join(data.values()))
+    names = json.dumps([(name, _integrity(of)) for name, of in {"./": data[INDEX], **data}.items()])
     text = (folder / WORKER).read_text("utf-8")
     text = text.replace('VERSION = ""', f'VERSION = "{version.hexdigest()[:16]}"')
     (folder / WORKER).write_text(text.replace("FILES = []", f"FILES = {names}"), "utf-8")
+
+
+def _integrity(data: bytes) -> str:
+    """What a browser checks a file by (Subresource Integrity)."""
+    return f"sha256-{base64.b64encode(hashlib.sha256(data).digest()).decode()}"
 
 
 def _files_of(folder: Path) -> Iterator[Path]:

@@ -62,8 +62,12 @@ def test_what_is_played_is_written_as_midi(command, refused, tune, tmp_path):
     assert [each.key for each in notes_of(read_score(target))] == [67, 69, 72, 66, 67]
     assert "exists" in refused(*words)
     assert command(*words, "--overwrite")[0] == 0
-    same = ("score", "show", target, "--export-midi", target)
-    assert "is not a written score" in refused(*same)
+    same = ("score", "show", target, "--export-midi", target, "--overwrite")
+    assert "would overwrite an input" in refused(*same)
+    code, shown, _ = command("score", "show", target)  # it has its parts and notes to show
+    assert code == 0
+    assert "5 notes, F#4 to C5" in shown
+    assert shown.splitlines()[-1].startswith("without ")
     over = ("score", "show", tune, "--export-midi", tune, "--overwrite")
     assert "would overwrite an input" in refused(*over)
 

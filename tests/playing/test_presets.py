@@ -36,7 +36,8 @@ SHIPPED = Presets(Path(os.devnull)).names()
 DEFAULTS = {param.address: param.default for param in TABLE}
 NAMES = [
     "", ".", "..", "../x", "..\\x", "a/b", "a\\b", "C:\\x", "/etc/passwd", "a\0b", ".hidden",
-    "-x", " x", "x" * 101, "x\n", "a\tb", "ä", "a:b", "*", "~/x", "$(x)",
+    "-x", " x", "x" * 101, "x\n", "a\tb", "a\u0308", "a:b", "*", "~/x", "$(x)",
+    "\u202ex", "胡" * 67, "\uff0c",
 ]  # fmt: skip
 
 
@@ -138,6 +139,15 @@ def test_a_new_file_is_whole_or_not_there_when_the_process_is_killed(presets):
         presets.save("mine", DEFAULTS)
     os.waitpid(process, 0)
     assert presets.all()[1] == []
+
+
+def test_a_preset_may_have_a_name_in_any_script(presets):
+    for name in ("二胡 独奏", "ä", "椰胡_2", "Ёлка"):
+        presets.save(name, DEFAULTS)
+        assert name in presets.names()
+        assert presets.load(name).values == presets.load(name).values
+        presets.delete(name)
+    assert not list(presets.own.iterdir())
 
 
 def test_no_name_leads_out_of_the_folder(subtests, presets, tmp_path):

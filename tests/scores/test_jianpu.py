@@ -134,6 +134,12 @@ def test_notes_last_as_is_written():
 def test_titles_and_names_of_parts_are_kept():
     score = written("title=二泉映月\ninstrument=Yehu\n1 NextPart\ninstrument=Erhu\n1")
     assert (score.title, [part.name for part in score.parts]) == ("二泉映月", ["Yehu", "Erhu"])
+    score = written(
+        "instrument=Yehu\n1 2 NextPart instrument=Erhu\n1 % NextPart 2\nL: a NextPart 3"
+    )
+    assert [part.name for part in score.parts] == ["Yehu", "Erhu", ""]
+    assert [[note.pitch for note in part.notes] for part in score.parts] == [[60, 62], [60], [64]]
+    assert not score.unknown
 
 
 def test_a_pickup_is_bar_0():
@@ -254,6 +260,9 @@ def test_the_next_part_keeps_key_and_metre_unless_it_names_its_own():
     ]
     assert float(score.parts[1].notes[1].beat) == 4.0
     assert [key.do for key in score.keys] == ["G"]
+    told = "a part without a key is in that of the one before, not in C"  # as in jianpu-ly
+    assert told in score.warnings
+    assert told not in written("1=C 1\nNextPart\n1\nNextPart\n1=D 1").warnings
 
 
 def test_signs_of_web_pages_are_understood():

@@ -138,7 +138,7 @@ def test_each_element_is_played_silent_or_told_and_the_documentation_says_which(
     style = '<attributes><measure-style><slash type="{}"/></measure-style></attributes>'
     swing = "<sound><swing><first>2</first><second>1</second></swing></sound>"
     pedal = '<direction><direction-type><pedal type="start"/></direction-type></direction>'
-    more = "<print/><strange><pitch/></strange>"
+    more = "<sound><swing><straight/></swing></sound><print/><strange><pitch/></strange>"
     bars = (swing + FOUR, style.format("start") + pedal + FOUR, style.format("stop") + FOUR + more)
     assert read(score(*bars)).unknown == {
         "swing (bar 1)": 1, "slash (bar 2)": 1, "pedal": 1, "strange": 1,

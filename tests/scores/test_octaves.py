@@ -117,6 +117,17 @@ def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(file):
     assert keys(read_any(tracks, ReadOptions(("Cello",)))) == [76, 79]
 
 
+def test_only_what_is_played_counts_in_what_moves(file):
+    drums, low = notes(38, 40, channel=9), notes(40, channel=1)
+    assert not read_any(file(Drums=drums)).remarks
+    song = file(_=[*notes(70, channel=0), *low, *drums])
+    only = ReadOptions(all_parts=True, channels={0})
+    assert not read_any(song, only).remarks
+    assert keys(read_any(song, only)) == [70, 40, 38, 40]
+    asked = ReadOptions(all_parts=True, channels={9})
+    assert read_any(song, asked).remarks == ("moved to fit F4 to F6: three octaves up",)
+
+
 def test_channels_of_mpe_are_one_part_whether_the_file_says_it_or_the_player(file):
     tune = [each for n, key in enumerate(LOW) for each in notes(key, channel=n + 1)]
     moved = [key + 12 for key in LOW]

@@ -26,7 +26,7 @@ from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.tuning import STANDARD_A4
 from yehu_server.scores.gesture import CONTROLS
 from yehu_server.util.documents import Document, Fields
-from yehu_server.util.files import PLAIN_NAME
+from yehu_server.util.files import is_plain_name
 from yehu_server.util.values import choice, choices, line, number, whole
 
 LICENCE = "MIT"  # where none is given: that of this program, and of the body it was measured with
@@ -172,7 +172,7 @@ def _splits(table: Fields) -> tuple[tuple[str, float], ...]:
     if not table.data:
         return (("train", 1.0),)
     for name in table.data:
-        if not PLAIN_NAME.fullmatch(name):
+        if not is_plain_name(name):
             table.add_error(name, "is not a plain folder name")
     if len({name.casefold() for name in table.data}) < len(table.data):
         table.add_error("", "names that differ in no more than capitals")

@@ -48,8 +48,8 @@ def add_to(commands: Any) -> None:
     add_options(
         show,
         """
-        score FILE: a file of MusicXML, ABC or jianpu
-        --song N: the N-th tune of a file of ABC (default: the first)
+        score FILE: a file of MusicXML, ABC or jianpu, a MIDI file or a capture
+        --song N: the N-th tune of a file of ABC, or song of a MIDI file (default: the first)
         --json: print one JSON object
         --plot OUT.png: draw the part that is played as it will be bowed, in jianpu
         --part NAME: the part to draw (default: the one that plays)
@@ -83,10 +83,14 @@ def add_to(commands: Any) -> None:
 
 def _show(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.stringing import notes_of
-    from yehu_server.scores.reading import read_written
+    from yehu_server.scores.transcription import read_as_written
+    from yehu_server.scores.written.notated import times
     from yehu_server.scores.written.text import fields_of, lines_of
 
-    written = read_written(arguments.score, arguments.song)
+    written, left = read_as_written(arguments.score, arguments.song)
+    if left:
+        line = ", ".join(times(name, count) for name, count in sorted(left.items()))
+        written = replace(written, warnings=(*written.warnings, f"without {line}"))
     if arguments.export_midi is not None:
         _export(arguments, written)
     if arguments.plot is not None:

@@ -7,6 +7,7 @@ import stat
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
+from unicodedata import normalize
 
 import tomlkit
 from platformdirs import user_config_path
@@ -14,7 +15,7 @@ from tomlkit.exceptions import TOMLKitError
 
 from yehu_server.errors import OutputError, PresetError
 from yehu_server.params.preset_file import SAVED, VERSION, Preset, document_of, preset_from
-from yehu_server.util.files import PLAIN_NAME, path_inside, read_text, shipped_folder, write_text
+from yehu_server.util.files import is_plain_name, path_inside, read_text, shipped_folder, write_text
 
 ENDING = ".toml"
 MINE = "mine/"  # prefix of the names of the user's own presets
@@ -40,7 +41,7 @@ def _read_once(path: Path, name: str, _mtime_ns: int, _size: int) -> Preset:
 def is_name(name_or_path: str) -> bool:
     """Whether a text is the name of a preset, or the names of several, not a path."""
     names = [name.removeprefix(MINE) for name in name_or_path.split(AND)]
-    return not name_or_path.endswith(ENDING) and all(map(PLAIN_NAME.fullmatch, names))
+    return not name_or_path.endswith(ENDING) and all(map(is_plain_name, names))
 
 
 def together(presets: Sequence[Preset]) -> Preset:
@@ -216,5 +217,6 @@ def _names(folder: Path) -> list[str]:
         files = os.listdir(folder)  # noqa: PTH208 - names are enough
     except OSError:
         return []
-    names = (file.removesuffix(ENDING) for file in files if file.endswith(ENDING))
-    return sorted(name for name in names if PLAIN_NAME.fullmatch(name))
+    # Some file systems of Macs take accents apart.
+    names = (normalize("NFC", file.removesuffix(ENDING)) for file in files if file.endswith(ENDING))
+    return sorted(filter(is_plain_name, names))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cache
 
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
@@ -17,13 +18,13 @@ from yehu_server.scores.score import (
     ScoreNote,
     ScorePart,
     notes_of,
-    transposed,
 )
 from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
 from yehu_server.scores.written.notated import Written, listed
 
+MELODIC = frozenset(range(16)) - {PERCUSSION_CHANNEL}
 MAX_NAMED = 8  # parts in a line
 ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
 
@@ -113,16 +114,25 @@ def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
     return replace(score, events=tuple(events), parts=tuple(kept))
 
 
-def midi_in_range(score: Score, *, is_mpe: bool, within: NoteRange = YEHU) -> Score:
+def midi_in_range(
+    score: Score,
+    channels: Collection[int] | None = None,
+    *,
+    is_mpe: bool = False,
+    within: NoteRange = YEHU,
+) -> Score:
     """Return a score of MIDI with each part moved by octaves into range, and a remark of that.
 
     With `is_mpe` the notes of a part are on channels of their own, and all are one part. The range
-    is that of `within`.
+    is that of `within`. Only what `channels` play moves, by default all but percussion.
     """
+    channels = MELODIC if channels is None else channels
     tuned = transposed_keys(score)
     by_part: dict[str, list[ScoreNote]] = {}
     find = finder_of(score.parts)
     for note in notes_of(score):
+        if note.channel not in channels:
+            continue
         at = find(note.channel, score.events[note.begins].track)
         own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
         by_part.setdefault("" if is_mpe else own_name, []).append(note)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from pkgutil import resolve_name
@@ -114,6 +114,7 @@ class ReadOptions:
     in_range: bool = True  # whether parts are moved by octaves as a whole, to fit the instrument
     is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
     within: NoteRange = YEHU  # the notes of the instrument
+    channels: Collection[int] | None = None  # of a MIDI file that are played: all but percussion
 
     @classmethod
     def by(
@@ -126,6 +127,7 @@ class ReadOptions:
             in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
             is_mpe=playing.mapping.mpe,
             within=notes_of(playing.quantities),
+            channels=playing.channels,
         )
 
 
@@ -217,7 +219,8 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
         return replace(score, remarks=(*score.remarks, line))
     if not options.in_range:
         return score
-    return chosen_parts.midi_in_range(score, is_mpe=is_mpe, within=options.within)
+    channels = range(16) if is_mpe else options.channels
+    return chosen_parts.midi_in_range(score, channels, is_mpe=is_mpe, within=options.within)
 
 
 def read_written(path: Path, song: int | None = None) -> Written:

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, STOP
 from yehu_server.core.player.parameter_indices import VELOCITY
@@ -84,7 +85,7 @@ def read_as_written(
     score = read_score(path, song=song)
     with errors_name(path):
         written, lost = written_of_midi(score, tempo)
-    return replace(written, warnings=score.warnings), lost
+    return replace(written, warnings=score.warnings, remarks=score.remarks), lost
 
 
 def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, dict[str, int]]:
@@ -95,10 +96,15 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
     notes = notes_of(score)
     higher = transposed_keys(score)
     by_frames = any(math.isnan(note.beat) for note in notes)
-    names = (ScorePart(""),) if says_mpe(score) or not score.parts else score.parts
+    is_mpe = says_mpe(score)
+    names = (ScorePart(""),) if is_mpe or not score.parts else score.parts
     voices: list[tuple[str, list[PlayedNote]]] = [(part.name, []) for part in names]
+    percussion = 0
     find = finder_of(names)
     for note in notes:
+        if note.channel == PERCUSSION_CHANNEL and not is_mpe:
+            percussion += 1
+            continue
         at = find(note.channel, score.events[note.begins].track)
         if at is not None:
             end = score.events[note.ends].beat if note.ends >= 0 else note.beat + 1.0
@@ -106,9 +112,10 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
             pitch = note.key + higher.get(note.begins, 0.0)
             voices[at][1].append(PlayedNote(begin, end, pitch, note.velocity))
     lost = Counter(filter(None, map(_left_out, score.events)))
+    lost["notes of percussion"] += percussion
     if by_frames:
         written, more = written_of_seconds(voices, tempo)
-        return replace(written, title=score.name), {**lost, **more}
+        return replace(written, title=score.name), {**+lost, **more}
     whole, chords = _written(voices, _tempi(score), score.metres, score.keys)
     lost["lower notes of chords"] += chords
     return replace(whole, title=score.name), dict(+lost)

@@ -23,8 +23,9 @@ MAX_TEXT_BYTES = 64 * 2**20
 PIECE_BYTES = 2**20
 MAX_LINE_BYTES = 1 << 20  # the first line of a capture has the bowing tables of all players
 MAX_SETTINGS_BYTES = 2**20  # for files that are read while the instrument plays
-# Names that come over the network: no path, no hidden file.
-PLAIN_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._-]{0,99}")
+# Names that come over the network, of letters of any script: no path, no hidden file.
+_PLAIN_NAME = re.compile(r"[^\W_][\w .-]{0,99}")
+MAX_NAME_BYTES = 200  # of the 255 that file systems have, with room for an ending
 MAX_SHOWN = 40  # characters of other names in errors
 LEFTOVER = re.compile(r"\.yehu-server-[0-9a-f]{16}\.part")
 LEFTOVER_AFTER_S = 24 * 3600.0  # without a write; a process may be stopped for hours
@@ -103,12 +104,17 @@ def make_folder(folder: Path) -> None:
         raise OutputError(f"{folder}: cannot be made: {error_reason(error)}") from error
 
 
+def is_plain_name(name: str) -> bool:
+    """Whether a name is safe as that of a file, with any ending."""
+    return _PLAIN_NAME.fullmatch(name) is not None and len(name.encode()) <= MAX_NAME_BYTES
+
+
 def path_inside(folder: Path, name: str, ending: str = "") -> Path:
     """The path in a folder for a name that came over the network.
 
     Raises OutputError where it is no plain name, or a symbolic link that leads out of the folder.
     """
-    if not PLAIN_NAME.fullmatch(name):
+    if not is_plain_name(name):
         shown = name if len(name) <= MAX_SHOWN else f"{name[:MAX_SHOWN]}..."
         raise OutputError(f"{shown!r} is not a plain name of letters, digits, . _ - and spaces")
     path = folder / f"{name}{ending}"

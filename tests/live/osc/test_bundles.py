@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 import time
 from collections import Counter
 
@@ -34,6 +35,14 @@ def test_bundles_keep_their_distances_to_the_sample_and_their_time(make_still, w
         assert abs(frames[0] - expected) <= still.RATE / 1000
     assert still.late() == 0
     assert still.handler.waiting == still.handler.counts.late_bundles == 0
+
+
+def test_time_tags_minutes_ahead_are_told_once_with_their_sender(still, wire, caplog):
+    for seconds in (30.0, 150.0, 200.0):
+        packet = wire.message("/yehu/note", 67, 90)
+        still.take(wire.bundle(still.clock.time() + seconds, packet))
+    (line,) = [each.getMessage() for each in caplog.records if "ahead" in each.getMessage()]
+    assert re.search(r"time tags of \S+ are 1[45]\d s ahead", line)
 
 
 def test_a_bundle_of_the_future_makes_no_other_message_wait(still, wire):

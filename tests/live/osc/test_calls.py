@@ -115,6 +115,20 @@ def test_after_panic_or_reset_nothing_is_left(still, wire, order, end):
     assert rms(still.pass_time(0.5)) > 1e-4
 
 
+def test_a_momentary_button_that_is_let_go_ends_nothing(still):
+    still.send("/note", 67, 90)
+    still.send("/playing/volume", 0.7)
+    for call in ("/panic", "/reset", "/release"):
+        for argument in (0, 0.0, False):
+            still.send(call, argument)
+    still.pass_time(0.1)
+    assert still.player.pitch == 67.0
+    assert still.player.value("/playing/volume") == pytest.approx(0.7)
+    still.send("/panic", 1.0)
+    still.pass_time(0.1)
+    assert still.player.pitch is None
+
+
 # ---------------------------------------------------------------- ping
 
 

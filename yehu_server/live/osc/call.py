@@ -42,6 +42,11 @@ class Request:
             raise RefusedError(f"expected {wanted} argument{plural}, got {count}")
         return [_number(argument) for argument in self.arguments]
 
+    @property
+    def is_let_go(self) -> bool:
+        """Whether it is what a momentary button sends as it is let go: 0 or F."""
+        return list(self.arguments) == [0]
+
     def word(self) -> str:
         """The only argument, a string; raises RefusedError where there is anything else."""
         if len(self.arguments) != 1 or not isinstance(self.arguments[0], str):

@@ -29,6 +29,8 @@ log = logging.getLogger(__name__)
 
 DUE_AT_ONCE = 32  # scheduled messages, between others
 LONGEST_WAIT_S = 0.5
+FAR_S = 60.0  # a time tag so far ahead is told
+MAX_FAR = 64  # hosts that are told of, each once
 
 
 class OscHandler:
@@ -44,6 +46,7 @@ class OscHandler:
         self._schedule = context.schedule
         self._tags = TagClock(self._players[0])
         self._arrivals = Arrivals(self._players[0].frame_of, self._players[0].instrument.rate)
+        self._far: set[str] = set()  # hosts that were told of
         self._acts: dict[str, Act] = {}
         for group in self._groups:
             self._acts |= acts(group, context)
@@ -98,7 +101,15 @@ class OscHandler:
             self.clients.send_error(peer, "", f"malformed packet: {error}")
 
     def _keep(self, message: Message, peer: Peer) -> None:
-        """Keep a message until its time."""
+        """Keep a message until its time; tell of a sender whose clock is far from this one."""
+        ahead_s = (message.due_s or 0.0) - time.time()
+        if ahead_s > FAR_S and peer.host not in self._far and len(self._far) < MAX_FAR:
+            self._far.add(peer.host)
+            log.warning(
+                "OSC: time tags of %s are %.0f s ahead, and heard then: is its clock right?",
+                peer.host,
+                ahead_s,
+            )
         packet = answer(message.address, message.payload)  # smaller than the message unpacked
         if not self._schedule.add(message.due_s or 0.0, packet, peer):
             self.context.send_error(peer, message.address, "too many messages wait for their time")

@@ -107,6 +107,8 @@ class _Reader:
                     self._head(word, parser.scale, number)
                 else:
                     parser.read(word)
+            if number and key and not scale.has_own:
+                self._notices["a part without a key is in that of the one before, not in C"] += 1
             key, metre = scale.first_key, parser.metre or metre
             if number == 0 and self._key is None:
                 self._key = key

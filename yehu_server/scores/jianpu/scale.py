@@ -28,7 +28,7 @@ class Scale:
         self.mode = DEFAULT_MODE  # of 二四谱
         self.characters = characters or ERSIPU  # semitones above do, in this notation
         self._key = key
-        self.first_key, self._has_own = key, False  # the first that is written, if one is
+        self.first_key, self.has_own = key, False  # the first that is written, if one is
         self._octave = 0
 
     def read_key(self, text: str) -> bool:
@@ -39,8 +39,8 @@ class Scale:
         letter, sign = found[2] or found[5], found[3] or found[4]
         do = SEMITONES[letter.upper()] - MAJOR[int(found[1]) - 1]
         self._key = (do - LOWEST_DO) % 12.0 + LOWEST_DO + {"#": 1, "b": -1}.get(sign or "", 0)
-        if not self._has_own:
-            self._has_own, self.first_key = True, self._key
+        if not self.has_own:
+            self.has_own, self.first_key = True, self._key
         return True
 
     def shift(self, octaves: int, word: Word) -> None:

@@ -26,6 +26,7 @@ _HEADER = re.compile(r"\s*([^\W\d_]+)\s*=")
 _WORD_SIGNS = {"Fr", "slide"}  # begin with a name and = as headers do, but are words
 _WORD = re.compile(r'[_^-]?"[^"]*"|\S+')
 _TO_BLANK = re.compile(r"\s*(?:[LH]:|chords\s*=)\s*")  # with nothing more: up to an empty line
+_NEXT = re.compile(r"(?<!\S)Next(?:Part|Score)(?!\S)")
 _LYRICS = ("L:", "H:")
 _TEMPO_COMMENT = re.compile(r"%%\s*tempo:\s*(\S+)\s*")
 
@@ -74,7 +75,7 @@ def decoded(data: bytes) -> tuple[str, str]:
 def words_of(text: str) -> Iterator[Word | Header]:
     """The words and headers of a text without comments and lyrics; LilyPond code is ``LP:``."""
     in_code = in_lyrics = False
-    for number, written in enumerate(text.splitlines(), start=1):
+    for number, written in _divided(text):
         line = written.translate(_PLAIN)
         bare = line.strip()
         if in_code:
@@ -90,6 +91,21 @@ def words_of(text: str) -> Iterator[Word | Header]:
                 yield Header("chords", "", number)
         elif not bare.startswith(_LYRICS):
             yield from _words_in(line, written, number)
+
+
+def _divided(text: str) -> Iterator[tuple[int, str]]:
+    """Lines and their numbers; NextPart and NextScore begin one, and end it, as in jianpu-ly.
+
+    What follows on the same line stays at its column.
+    """
+    for number, line in enumerate(text.splitlines(), start=1):
+        begin = 0
+        for found in _NEXT.finditer(line):
+            if "%" not in line[: found.start()]:
+                yield number, " " * begin + line[begin : found.start()]
+                yield number, " " * found.start() + found[0]
+                begin = found.end()
+        yield number, " " * begin + line[begin:]
 
 
 def _words_in(line: str, written: str, number: int) -> Iterator[Word | Header]:

@@ -83,6 +83,8 @@ def tell(measure: Element, number: str, unknown: Counter[str]) -> None:
             tag = child.tag
             if tag in READ_ELSEWHERE:
                 continue
+            if tag == "swing" and child.find("straight") is not None:
+                continue
             if tag not in _KNOWN and child.get("type") != "stop":
                 place = f" (bar {number})" if tag in BY_BAR else ""
                 unknown[f"{printable(tag)}{place}"] += 1

@@ -2,8 +2,8 @@
 
     .venv/bin/python scripts/figures.py [NAME...] [-o FOLDER]
 
-paper      Figures 2 to 6 of the paper from this model, as its notebook draws them, and the README's
-           picture.
+paper      Figures 2 to 6 of the paper from this model, as its notebook draws them, and that of the
+           site's home.
 body       A body that was fitted to taps, and how an instrument with another body sounds.
 rooms      How the rooms of the presets answer an impulse.
 ensemble   The beginning of examples/mo_li_hua.mid: four yehus on a stage.

@@ -1,4 +1,4 @@
-"""Figures 2 to 6 of the paper, and the README's picture, from this model.
+"""Figures 2 to 6 of the paper, and the picture of the site's home, from this model.
 
 Where the paper compares with measurements, these figures compare with the model's theory, because
 the measured curves are not published.
@@ -77,7 +77,7 @@ def admittance(folder: Path) -> None:
 
 
 def picture(folder: Path) -> None:
-    """Draw the README's picture: moving strings, and the spectrogram of a tune."""
+    """Draw the picture of the site's home: moving strings, and the spectrogram of a tune."""
     controls = {
         "bow_force": [[0, 0], [0.03, 0.6]],
         "bow_velocity": [[0, 0], [0.03, 0.3]],

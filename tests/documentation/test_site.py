@@ -75,7 +75,7 @@ def test_a_page_begins_with_its_one_title_and_says_what_it_is_for(subtests):
 @pytest.mark.slow
 def test_links_out_of_the_docs_lead_to_pages_of_the_site(site, content):
     assert "mappings.html" in content("playing.html").all("a", "href")
-    assert "begin.html#layers" in content("architecture.html").all("a", "href")
+    assert "begin.html" in content("pages.html").all("a", "href")
     assert "play/index.html" in content("index.html").all("a", "href")
     source = "source/yehu_server/core/engine/snapshot.py.html"
     assert source in content("page.html").all("a", "href")

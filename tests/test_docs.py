@@ -44,6 +44,10 @@ def test_an_index_leads_to_every_page_beside_it(index):
     assert {name for name in beside if f"]({name})" not in page_named(index).text} == set()
 
 
+def test_the_readme_is_short_enough_to_finish():
+    assert len(page_named("README.md").text.split()) <= 900
+
+
 def test_every_call_is_described():
     described = " ".join(page_named("docs/osc.md").code)
     assert [call.address for call in CALLS if PREFIX + call.address not in described] == []

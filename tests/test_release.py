@@ -11,6 +11,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from yehu_server import __version__
+
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("yehu_server/ahead/shipped/", "yehu_server/compile/shipped/")
 
@@ -34,6 +36,10 @@ def test_the_citation_is_of_the_version_of_the_project(script, tmp_path):
     (tmp_path / "CITATION.cff").write_text(cited.replace(version, "9.9.9"), encoding="utf-8")
     with pytest.raises(script.NotReadyError, match=r"CITATION.cff is of 9\.9\.9"):
         script.check_versions(tmp_path)
+
+
+def test_the_program_is_of_the_version_of_the_project(script):
+    assert script.check_versions(ROOT) == __version__
 
 
 def archives(folder, told, names):

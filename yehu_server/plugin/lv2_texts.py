@@ -106,13 +106,13 @@ def manifest(library: str, presets: Iterable[str], window: str = "") -> str:
 
 def plugin_text(shown: Sequence[HostParameter]) -> str:
     """Write the description of the plug-in."""
-    _, minor, micro = __version__.split(".")
+    major, minor, micro = __version__.split(".")
     ports = [_port(FIRST_PARAMETER + i, each) for i, each in enumerate(in_lv2(shown))]
     groups = dict.fromkeys(each.group for each in in_lv2(shown))
     return f"{PREFIXES}\n" + PLUGIN.format(
         uri=LV2_URI,
-        # An odd number would say that it is not yet to be used.
-        minor=2 * int(minor),
+        # An odd number, or zero, would say that it is not yet to be used. LV2 has no major one.
+        minor=2 * (100 * int(major) + int(minor)),
         micro=2 * int(micro),
         ports=" , ".join(ports),
         groups="".join(

@@ -139,7 +139,7 @@ FOLLOWED_AGAIN = ("within 5 cents", "within 10 cents", "onsets F1", "level")
 
 
 def followed() -> str:
-    """How well sounds are followed, from bench/results/following.json."""
+    """How well sounds are followed: the plain ones, and those with the loudest noise."""
     rows = measured("following")
     head = "sound, pitch, chroma, within 10 cents, wrong octave, onsets, level"
     return table(
@@ -148,7 +148,7 @@ def followed() -> str:
             [name, *(f"{100.0 * row[each]:.1f} %" for each in FOLLOWED[:4])]
             + [f"{row[each]:.2f}" for each in FOLLOWED[4:]]
             for name, row in rows.items()
-            if "RPA" in row
+            if "RPA" in row and name.endswith(("plain", "noise, 10 dB"))
         ),
     )
 
@@ -183,6 +183,7 @@ def followed_live() -> str:
                 f"{row['onsets F1']:.2f}",
             ]
             for name, row in measured("following_live")["heard"].items()
+            if name.endswith("plain")
         ),
     )
 

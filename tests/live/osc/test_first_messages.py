@@ -1,4 +1,4 @@
-"""The OSC messages of the README, in the order in which they stand there."""
+"""The OSC messages that pages begin with, in the order in which they stand there."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ def number(word: str) -> int | float:
     return int(word) if word.lstrip("-").isdigit() else float(word)
 
 
-def test_the_five_messages_begin_move_and_end_a_note(still):
-    block = next(each for each in page("README.md").blocks("") if each.startswith("/yehu"))
+@pytest.mark.parametrize("name", ["README.md", "docs/osc.md"])
+def test_the_five_messages_begin_move_and_end_a_note(still, name):
+    block = next(each for each in page(name).blocks("") if each.startswith("/yehu"))
     lines = [line.partition("   ")[0].split() for line in block.splitlines()]
     messages = [(line[0].removeprefix("/yehu"), *map(number, line[1:])) for line in lines]
     sounding = [None, 67.0, 69.0, 69.0, None]

@@ -2,9 +2,10 @@
 
     .venv/bin/python scripts/articulations.py [NAME...] [--other] [--rate HZ] [--save FILE]
 
-Prints the figures that docs/articulations.md states a range for, the notes that are wrong and the
-ranges that are missed. `--other` plays other pitches; `--save` writes what the page's table is made
-from. The analysis knows when notes begin, how long they are and their pitches, and no gesture.
+Prints each figure beside the range stated for it (measures/articulated.py), the notes that are
+wrong and the ranges that are missed. `--other` plays other pitches; `--save` writes
+bench/results/articulations.json. The analysis knows when notes begin, how long they are and their
+pitches, and no gesture.
 """
 
 from __future__ import annotations

@@ -134,39 +134,12 @@ def budget() -> str:
     )
 
 
-FIGURES: dict[str, tuple[str, str]] = {
-    "rise": ("rise", "ms"), "lasts": ("lasts", "ms"), "sounds": ("sounds", "% of the note"),
-    "strokes": ("strokes", ""), "stroke_rate": ("strokes", "a second"),
-    "dip": ("between strokes", "dB down"), "begins": ("begins", "semitones"),
-    "ends": ("ends", "semitones"), "low": ("lowest", "semitones"),
-    "high": ("highest", "semitones"), "arrives": ("on its pitch after", "ms"),
-    "beats": ("beats", ""), "beat_rate": ("beats", "a second"), "width": ("width", "cents"),
-    "swell": ("swells by", "dB"), "loudest": ("loudest at", "of the note"),
-    "fade": ("fades by", "dB"),
-}  # fmt: skip
-
-
-def articulations_heard() -> str:
-    """What scripts/articulations.py heard of each articulation, beside what is stated."""
-    rows = []
-    for name, row in measured("articulations").items():
-        heard, stated = [], []
-        for key, each in row["figures"].items():
-            words, unit = FIGURES[key]
-            heard.append(f"{words} {to(each['from'], each['to'], '.3g')} {unit}".strip())
-            low, high, _ = each["stated"]
-            stated.append(to(low, high, "g"))
-        wrong = f"{row['wrong']} of {row['notes']}"
-        rows.append([f"`{name}`", "; ".join(heard), ", ".join(stated), row["source"], wrong])
-    return table("name, heard: medians of tempi and dynamics, stated, from, wrong notes", rows)
-
-
 FOLLOWED = ("RPA", "RCA", "within 10 cents", "octave errors", "onsets F1", "level")
 FOLLOWED_AGAIN = ("within 5 cents", "within 10 cents", "onsets F1", "level")
 
 
 def followed() -> str:
-    """How well sounds are followed, from bench/results/following.json."""
+    """How well sounds are followed: the plain ones, and those with the loudest noise."""
     rows = measured("following")
     head = "sound, pitch, chroma, within 10 cents, wrong octave, onsets, level"
     return table(
@@ -175,7 +148,7 @@ def followed() -> str:
             [name, *(f"{100.0 * row[each]:.1f} %" for each in FOLLOWED[:4])]
             + [f"{row[each]:.2f}" for each in FOLLOWED[4:]]
             for name, row in rows.items()
-            if "RPA" in row
+            if "RPA" in row and name.endswith(("plain", "noise, 10 dB"))
         ),
     )
 
@@ -210,6 +183,7 @@ def followed_live() -> str:
                 f"{row['onsets F1']:.2f}",
             ]
             for name, row in measured("following_live")["heard"].items()
+            if name.endswith("plain")
         ),
     )
 
@@ -235,7 +209,6 @@ TABLES: dict[str, Callable[[], str]] = {
         "of a part, what", ([f"`{row.name}`", row.doc] for row in PART_STATUS)
     ),
     "articulations": articulations,
-    "articulations-heard": articulations_heard,
     "ratios": ratios,
     "kernels": kernels,
     "budget": budget,

@@ -18,6 +18,7 @@ from yehu_server.scores.score import (
     ScoreNote,
     ScorePart,
     notes_of,
+    transposed,
 )
 from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns

@@ -50,6 +50,7 @@ SHAPES: dict[str, Callable[[int], bytes | str]] = {
     "tracks in turn.mid": lambda n: tracks(n, apart=10),
     "notes.abc": lambda n: ABC + "a" * n,
     "repeats.abc": lambda n: ABC + "|::::A" * n,
+    "many repeats.abc": lambda n: ABC + "|::A::|" * n,
     "bars.abc": lambda n: ABC + "A|" * n,
     "rests.abc": lambda n: ABC + "Z|" * n + "A",
     "long rests.abc": lambda n: ABC + "A|" + "Z1000|" * n,

@@ -199,7 +199,7 @@ def _fill_passes(group: list[_Ending]) -> None:
 class _Unfolder:
     def __init__(self, bars: Sequence[BarLines], passages: list[_Passage]) -> None:
         self._bars = bars
-        self._passages = passages
+        self._passages = {id(passage): passage for passage in passages}
         self._beginning: dict[int, list[_Passage]] = {}
         self._ending: dict[int, list[_Passage]] = {}  # passes may end here; inner ones first
         self._choices: dict[int, tuple[_Passage, _Ending]] = {}
@@ -257,14 +257,15 @@ class _Unfolder:
                 continue
             if turn < passage.times and passage.repeats_at(at):
                 self._passes[id(passage)] = turn + 1
-                for inner in self._passages:
+                for key in list(self._passes):
+                    inner = self._passages[key]
                     if inner is not passage and passage.first <= inner.first <= inner.last <= at:
-                        self._passes.pop(id(inner), None)
+                        del self._passes[key]
                 return passage.first
             if at == passage.last:
                 del self._passes[id(passage)]
         if at not in self._taken and not jumps.isdisjoint(("dacapo", "dalsegno")):
-            if all(self._passes.get(id(each), each.times) >= each.times for each in self._passages):
+            if all(turn >= self._passages[key].times for key, turn in self._passes.items()):
                 self._taken.add(at)
                 self._from = at
                 return self._go(self._segno(at) if "dalsegno" in jumps else self._movement)
@@ -277,7 +278,9 @@ class _Unfolder:
         if to_normal:
             self._from = None
         self._passes = {
-            id(each): each.times for each in self._passages if each.first <= to <= each.last
+            id(each): each.times
+            for each in self._passages.values()
+            if each.first <= to <= each.last
         }
         if to_normal:  # what begins here begins anew
             for each in self._beginning.get(to, ()):

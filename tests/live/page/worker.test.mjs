@@ -42,7 +42,11 @@ test("where nothing can be kept or found all comes from the network", async () =
   const fails = async () => {
     throw new Error("denied");
   };
-  for (const open of [fails, async () => ({ match: fails }), async () => ({ match: async () => {} })])
+  for (const open of [
+    fails,
+    async () => ({ match: fails }),
+    async () => ({ match: async () => {} }),
+  ])
     assert.equal(await answer(started(open), `${ORIGIN}/x`), `from the network: ${ORIGIN}/x`);
   const kept = started(async () => ({ match: async () => "kept" }));
   assert.equal(await answer(kept, `${ORIGIN}/x`), "kept");

@@ -15,6 +15,7 @@ from yehu_server.core.engine import native
 from yehu_server.core.engine import rig as memory
 from yehu_server.core.engine.ensemble import TAPE_FRAMES, Ensemble
 from yehu_server.core.engine.instrument import Instrument
+from yehu_server.core.engine.mailbox import WRITERS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import all_functions, functions_beside
 from yehu_server.core.physics.layout import F_HAMMER, F_N, F_PLUCK, FINGER_CONTROLS, MAX_FINGERS
@@ -90,6 +91,9 @@ def offsets(name: str) -> dict[str, int]:
 def atomics(name: str) -> list[list[str]]:
     """Loads, stores and fences between threads, and copies of whole records, by basic blocks."""
     at = {getattr(memory, f"{word}_AT"): word.lower() for word in WORDS}
+    for writer in range(WRITERS):
+        at[memory.POSTED_AT + writer * memory.CURSOR_BYTES] = "posted"
+        at[memory.DRAINED_AT + writer * memory.CURSOR_BYTES] = "drained"
     where = offsets(name)
     blocks = [[]]
     for line in lines(name):

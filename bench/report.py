@@ -34,6 +34,7 @@ def save(path: Path | None, figures: object, **conditions: Any) -> None:
     record = {
         "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
         "python": platform.python_version(),
+        **({"load": round(os.getloadavg()[0], 1)} if hasattr(os, "getloadavg") else {}),
         **conditions,
         "figures": figures,
     }

@@ -44,7 +44,10 @@ def test_the_wrong_kind_is_named_also_from_500_hz_up_and_with_noise(everything):
 
 
 def test_wrong_units_are_named():
-    for factors, told in (((1e3, 1e-4), "no fiddle's"), ((1e60, 1e-60), "too large or too small")):
+    for factors, told in (
+        ((1e3, 1e-4), "not a fiddle's"),
+        ((1e60, 1e-60), "too large or too small"),
+    ):
         for factor in factors:
             with pytest.raises(MeasurementError, match=told):
                 checked(factor * MEASURED["mobility"], "mobility")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import mido
 
+from yehu_server.compile.cache_folder import data_folder
 from yehu_server.core.midi.registered_parameters import DATA_ENTRY, NRPN_FINE, RPN_FINE
 from yehu_server.core.midi.registered_parameters import NRPN_COARSE as NRPN
 from yehu_server.core.midi.registered_parameters import RPN_COARSE as RPN
@@ -26,7 +27,7 @@ from yehu_server.util.processes import machine_lock
 # How far a source has to move, 0 to 1: pedals and breath sensors are noisy at rest.
 DISTANCE = 1.0 / 16.0
 PRESSURES = {"aftertouch": sources.PRESSURE, "polytouch": sources.POLY_PRESSURE}
-LOCK = "-learned"  # another server may learn at the same time
+LOCK = "learned"  # another server may learn at the same time
 AT_REST = {sources.BEND: 0.5, sources.PRESSURE: 0.0, sources.POLY_PRESSURE: 0.0}
 
 
@@ -178,7 +179,7 @@ def learn(
     if bind.is_by_range:  # the bend range still sets its span
         bind = replace(bind, is_soft=False)
     path = own_file(mapping)
-    with machine_lock(own_file(mapping).parent, LOCK):
+    with machine_lock(data_folder(), LOCK):
         contents, text = _own_contents(mapping, path)
         dropped = [own for own in contents.binds if _excludes(bind, own)]
         added = [_replacing(bind, dropped)]
@@ -191,7 +192,7 @@ def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     Where none is learned, those that the user has written are removed. Returns the mapping without
     them, and how many were removed. Raises MappingError as `learn`.
     """
-    with machine_lock(own_file(mapping).parent, LOCK):
+    with machine_lock(data_folder(), LOCK):
         return _unlearned(mapping, find(target).address, own_file(mapping))
 
 

@@ -210,7 +210,7 @@ def _play_together(
     tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
     messages = sorted((placed for track in tracks for placed in track.messages), key=itemgetter(0))
     starts = [track.start_at for track in tracks]  # a message's byte is within its track
-    messages = without_resting_wheels(ended(settled(messages, starts), faults))
+    messages = ended(settled(without_resting_wheels(messages), starts), faults)
     clock = Clock(division, tempos)
     last = max(tracks, key=lambda track: track.end)
     end_s = clock.seconds(last.end)

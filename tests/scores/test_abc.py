@@ -257,8 +257,8 @@ def test_the_documentation_lists_fields_properties_and_directives():
     shown = " ".join(page.split())
     silent = [name for name, kind in vocabulary.DIRECTIVES.items() if kind == vocabulary.SILENT]
     of_midi = [name for name in silent if name.startswith("midi ")]
-    assert f"``` {' '.join(name for name in silent if name not in of_midi)} ```" in shown
-    assert f"``` {' '.join(name.removeprefix('midi ') for name in of_midi)} ```" in shown
+    assert f"```text {' '.join(name for name in silent if name not in of_midi)} ```" in shown
+    assert f"```text {' '.join(name.removeprefix('midi ') for name in of_midi)} ```" in shown
 
 
 def test_a_repeat_without_a_beginning_goes_back_to_a_double_bar(read):

@@ -134,7 +134,7 @@ def test_each_element_is_played_silent_or_told_and_the_documentation_says_which(
     assert len(frozenset().union(*kinds)) == sum(map(len, kinds)) == 442  # of the schema
     page = " ".join(EXAMPLE.parents[1].joinpath("docs/scores.md").read_text("utf-8").split())
     for kind in kinds:
-        assert f"``` {' '.join(sorted(kind))} ```" in page
+        assert f"```text {' '.join(sorted(kind))} ```" in page
     style = '<attributes><measure-style><slash type="{}"/></measure-style></attributes>'
     swing = "<sound><swing><first>2</first><second>1</second></swing></sound>"
     pedal = '<direction><direction-type><pedal type="start"/></direction-type></direction>'

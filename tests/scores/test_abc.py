@@ -208,6 +208,7 @@ def test_a_key_may_name_accidentals(read):
         ("D exp _b ^f", [66.0, 70.0, 72.0]),
         ("D Phr ^f", [66.0, 70.0, 72.0]),
         ("D =c", [66.0, 71.0, 72.0]),
+        ("C^f_b", [66.0, 70.0, 72.0]),
         ("exp ^c", [65.0, 71.0, 73.0]),
         ("F clef=bass middle=b", [65.0, 70.0, 72.0]),  # which are no accidentals
     ):

@@ -144,6 +144,46 @@ def test_tunes_are_those_of_abc2midi(subtests, read, tmp_path, everything):
         assert not [each for tune in tunes for each in differences([tune], read, tmp_path)]
 
 
+def edited(tune: str, chance: random.Random) -> str:
+    """A tune with one more field, of those that change where its notes sound, or with a text."""
+    lines = tune.rstrip("\n").split("\n")
+    head = next(at for at, line in enumerate(lines) if line.startswith("K:"))
+    body = [at for at in range(head + 1, len(lines)) if not re.match(r"\w:|%", lines[at])]
+    at, key = chance.choice(body), chance.choice(["G", "Am", "Bb", "Ddor"])
+    says = chance.choice(["clef=treble-8", "treble+8", "bass", "octave=1", "transpose=-2"])
+    kind = chance.choice(["key", "voice", "head", "inline", "change", "text", "spread"])
+    if kind == "key":
+        lines[head] += f" {says}"
+    elif kind == "voice":
+        lines.insert(head + 1, f"V:1 {says}")
+    elif kind == "head":
+        lines[head : head + 1] = [f"V:1 {says}", lines[head], "V:1"]
+    elif kind == "inline":
+        lines[head] += f" {says}"
+        lines[at] = f"[K:{key}]{lines[at]}"
+    elif kind == "change":
+        lines[head] += f" {says}"
+        lines.insert(at, f"K:{key}")
+    elif kind == "text":
+        lines[at:at] = ["%%begintext", "a bad egg", "%%endtext"]
+    else:
+        lines.insert(head, "%%propagate-accidentals not")
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.skipif(ABC2MIDI is None, reason="abc2midi is not installed")
+def test_edited_tunes_are_those_of_abc2midi(read, tmp_path, everything):
+    whole = re.split(r"\n(?=X:)", TUNES.read_text(encoding="utf-8"))[1:]
+    plain = [tune for tune in whole if tune.count("V:") + tune.count("[K:") == 0]
+    wrong = []
+    for seed in range(10 if everything else 1):
+        chance = random.Random(seed)
+        for tune in plain:
+            wrong += differences([edited(tune, chance)], read, tmp_path)
+    assert len(plain) > 30
+    assert not wrong
+
+
 def test_marks_voices_parts_and_jumps_are_understood(read):
     written = read(
         'X:1\nT:Two\nM:C\nL:1/4\nK:G\nV:1 name="Flute"\nV:2 name="Yehu"\n'
@@ -168,6 +208,7 @@ def test_a_key_may_name_accidentals(read):
         ("D exp _b ^f", [66.0, 70.0, 72.0]),
         ("D Phr ^f", [66.0, 70.0, 72.0]),
         ("D =c", [66.0, 71.0, 72.0]),
+        ("C^f_b", [66.0, 70.0, 72.0]),
         ("exp ^c", [65.0, 71.0, 73.0]),
         ("F clef=bass middle=b", [65.0, 70.0, 72.0]),  # which are no accidentals
     ):
@@ -206,9 +247,10 @@ def test_voices_sound_where_their_fields_say(read):
         ('K:C clef="treble+15"\nC|', [[84]]),
         ("V:1\nK:D\nV:2\nK:C\nf|\nV:1\nf|", [[78], [77]]),
     ):
-        found = [[note.pitch for note in part.notes] for part in read(f"X:1\nL:1/4\n{tune}").parts]
-        if found != pitches:
-            wrong.append((tune, pitches, found))
+        own = read(f"X:1\nL:1/4\n{tune}")
+        found = [[note.pitch for note in part.notes] for part in own.parts]
+        if found != pitches or own.unknown:
+            wrong.append((tune, pitches, found, own.unknown))
     assert not wrong
     written = read("X:1\nL:1/4\nK:D transpose=-2\nd|\nV:1 loud\n")
     assert [key.do for key in written.keys] == ["C"]  # which sounds

@@ -53,6 +53,9 @@ def test_latin_names_do_not_become_chinese():
         found = {texts: encoding_of(*texts) for texts in (*((each,) for each in coded), (*coded,))}
         wrong += [pair for pair in found.items() if pair[1] not in ("latin-1", "utf-8")]
     assert not wrong
+    late = "X:1 " * 3000
+    assert encoding_of(f"{late}Flöte".encode("latin-1")) == "latin-1"
+    assert encoding_of(f"{late} 二胡".encode("gbk")) == "gb18030"
     assert decoded("Flöte".encode("latin-1"), "latin-1") == "Flöte"
     assert encoding_of("Don\u2019t".encode("cp1252")) == "latin-1"  # which is no kanji
 

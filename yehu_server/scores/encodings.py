@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import codecs
 import re
+from functools import lru_cache
 from string import ascii_letters
 
 MARKS = {
@@ -32,9 +33,12 @@ NAMES = {
     "utf-16-be": "UTF-16",
 }
 LATIN = "latin-1"
-MAX_BYTES = 1 << 16  # of each text that are judged
+HIGH = bytes([0x00, 0x30, *range(0x4E, 0xA0), 0xFF])  # first bytes of what UTF-16 has most of
+MAX_BYTES = 1 << 12  # of a text that are judged
+MAX_TEXTS = 64
 EVERYDAY, RARE, STRANGE = 0.0, 1.0, 3.0  # costs of characters
 DEAREST = 1.0  # mean cost of what is believed
+_HIGH_BYTE = re.compile(rb"[\x80-\xff]")
 _LETTER = re.compile(rb"[A-Za-z ]")
 _FOREIGN = re.compile(r"([A-Za-z]?)([^\0-\x7f]+)([A-Za-z]?)")
 # Fullwidth forms and punctuation, which are everywhere; and kana.
@@ -50,7 +54,8 @@ def encoding_of(*texts: bytes) -> str:
     known = [_evident(text) for text in texts]
     if None not in known:
         return known[0] or "utf-8" if len(known) == 1 else "utf-8"
-    judged = [text[:MAX_BYTES] for text, own in zip(texts, known, strict=True) if own is None]
+    unknown = [text for text, own in zip(texts, known, strict=True) if own is None]
+    judged = [_judged(text) for text in unknown[:MAX_TEXTS]]
     costs = {name: _cost(judged, name) for name in NAMES}
     best = min(costs, key=lambda name: costs[name])
     return best if costs[best] <= DEAREST else LATIN
@@ -70,12 +75,21 @@ def _evident(text: bytes) -> str | None:
         if text.startswith(mark):
             return name
     if b"\0" in text[:MAX_BYTES].rstrip(b"\0"):
-        return min(("utf-16-le", "utf-16-be"), key=lambda name: _cost([text], name))
+        sides = {"utf-16-le": text[1:MAX_BYTES:2], "utf-16-be": text[:MAX_BYTES:2]}
+        strange = {name: len(side.translate(None, HIGH)) for name, side in sides.items()}
+        return min(sides, key=lambda name: (strange[name], -sides[name].count(0)))
     try:
         text.decode("utf-8")
     except UnicodeDecodeError:
         return None
     return "utf-8"
+
+
+def _judged(text: bytes) -> bytes:
+    """Some of a text, from shortly before what is not ASCII."""
+    found = _HIGH_BYTE.search(text)
+    begin = max(found.start() // 2 * 2 - 16, 0) if found else 0
+    return text[begin : begin + MAX_BYTES]
 
 
 def _cost(texts: list[bytes], encoding: str) -> float:
@@ -102,10 +116,11 @@ def _cost(texts: list[bytes], encoding: str) -> float:
                 count += len(run)
         # A single one that is rare may be two accents of a short word: þá.
         is_single = count == 1 and total and letters
-        best = min(best, STRANGE if is_single else total / max(count, 1))
+        best = min(best, STRANGE if is_single or not count else total / count)
     return best
 
 
+@lru_cache(maxsize=1 << 14)
 def _cost_of(sign: str, table: str) -> float:
     """The cost of a character, by its place in the table of an encoding."""
     if _SIGNS.match(sign) or (table == "cp932" and _KANA.match(sign)):

@@ -18,6 +18,7 @@ ALTERS = {"^^": 2.0, "^": 1.0, "=": 0.0, "_": -1.0, "__": -2.0}
 _WORD = re.compile(r'[A-Za-z]+=(?:"[^"]*"|[^\s"]*)|"[^"]*"|[^\s"]+')
 _KEY = re.compile(r"([A-Ga-g])(#|b(?!lu)|♯|♭|sharp|flat)?([A-Za-z]*)")
 _ACCIDENTALS = re.compile(r"(?:(?:\^\^?|__?|=)[A-Ga-g])+")
+_GLUED = re.compile(r"(?<=[A-Za-z#♯♭])(?=[\^_])")
 _ACCIDENTAL = re.compile(r"(\^\^?|__?|=)([A-Ga-g])")
 # The octaves of a clef: those of the standard, and _8 and ^8 as abcm2ps has them.
 _CLEF = re.compile(r"([A-Za-z]+)\d?(?:([+\-^_])(8|15))?")
@@ -70,7 +71,8 @@ def _octaves_of(clef: str, *, bare: bool = False) -> int | None:
 
 def key_of(words: Sequence[str], unknown: Counter[str]) -> Key | None:
     """Return the key that words name; None, and counted in `unknown`, where they name none."""
-    first, rest = (words[0], list(words[1:])) if words else ("none", [])
+    words = [part for word in words for part in _GLUED.split(word)]  # C^f^c
+    first, rest = (words[0], words[1:]) if words else ("none", [])
     if first in ("HP", "Hp"):
         fifths = 2
     elif first == "none" or "exp" in words or _ACCIDENTALS.fullmatch(first):

@@ -190,7 +190,7 @@ class _Tune:
             self._unknown[one_line(f"%%{name}"[:40])] += 1
 
     def _take_voice(self, text: str) -> None:
-        name, rest = [*text.split(maxsplit=1), "1", ""][:2] if text else ("1", "")
+        name, rest = [*(text or "1").split(maxsplit=1), ""][:2]
         found, called, others = properties_of(rest, self._unknown)
         if called:
             self._names[name] = called

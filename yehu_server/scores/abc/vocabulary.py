@@ -43,7 +43,8 @@ measurefont measurenb microscale micronewps multicol musicfont musiconly musicsp
 notespacingfactor oneperpage ornament pageheight pagescale pagewidth papersize parskipfac partsbox
 partsfont partsspace percmap postscript print-leftmargin printparts printtempo ps pslevel rbdbstop
 rbmax rbmin repbra repeatfont rightmargin scale score select sep setbarnb setdefl setfont
-shifthnote shiftunison slurheight splittune squarebreve staff staffbreak staffnonote staffscale
+shifthnote shiftunison slurgraces slurheight splittune squarebreve staff staffbreak staffnonote
+staffscale
 staffsep stafftopmargin staffwidth staves stemheight straightflags stretchlast stretchstaff
 stylesheet subtitlefont subtitlespace svg sysstaffsep tablature tempofont text textfont textoption
 textspace timewarn titlecaps titlefont titleformat titleleft titlespace titletrim topmargin

@@ -19,8 +19,8 @@ from yehu_server.errors import YehuError
 from yehu_server.scores.abc.voice import TOKEN
 from yehu_server.scores.reading import read_any
 
-FEW, MORE = 200, 1600
-MOST = 14  # times the lines for 8 times the file; 64 times is quadratic
+FEW, MORE = 100, 800
+MAX_RATIO = 14  # times the lines for 8 times the file; 64 times is quadratic
 ABC = "X:1\nT:t\nM:4/4\nL:1/64\nK:C\n"
 HEAD = '<?xml version="1.0"?><score-partwise version="4.0"><part-list><score-part id="P">'
 XML = f"{HEAD}<part-name>n</part-name></score-part></part-list><part id='P'>"
@@ -105,7 +105,7 @@ def test_reading_takes_time_in_proportion(tmp_path, shape):
         path = tmp_path / f"{n} {shape}"
         path.write_bytes(data if isinstance(data, bytes) else data.encode())
         lines.append(lines_of(path))
-    assert lines[2] < MOST * lines[1]
+    assert lines[2] < MAX_RATIO * lines[1]
 
 
 def test_what_lasts_too_long_is_refused_before_it_is_performed(tmp_path, monkeypatch):

@@ -176,7 +176,7 @@ export function checked(performance) {
  */
 export function notesAndGestures({ values, commands, ...rest }, isServers) {
   /** @param {import('./playing/table.js').Param} param */
-  const isFree = ({ isOwners }) => !(isServers && isOwners);
+  const isFree = ({ isOwnerOnly }) => !(isServers && isOwnerOnly);
   const brings = commands.filter(
     ({ kind, index }) =>
       kind !== HOLD && kind !== RAMP && (!OF_PARAMETERS.includes(kind) || isFree(TABLE[index])),

@@ -5,6 +5,8 @@ Sizes are in bytes. ``A_HOST`` is of all ports of one host together.
 
 from __future__ import annotations
 
+from yehu_server.core.engine.mailbox import PAGE_QUEUES
+
 # OSC that is received. A longer datagram is dropped; a longer packet ends its connection.
 SOCKET_BUFFER = 32 << 20  # asked for; the system may grant less
 DATAGRAM = 1 << 14
@@ -42,7 +44,7 @@ RECORDINGS_A_SECOND, RECORDINGS_AT_ONCE, RECORDINGS = 1.0, 10.0, 1000  # and in 
 
 # HTTP, WebSockets and pages. One connection too many closes the oldest of the host with most.
 WEB_CONNECTIONS, WEB_CONNECTIONS_A_HOST = 256, 128  # with those that have sent no request
-WEB_SOCKETS, WEB_SOCKETS_A_HOST = 64, 32
+WEB_SOCKETS, WEB_SOCKETS_A_HOST = PAGE_QUEUES, 32
 WEB_IDLE_S = 15.0  # before an idle connection is closed
 WEB_BODY, WEB_FRAME = 1 << 16, 1 << 16
 PAGE_UNSENT = 1 << 16  # waiting for one page

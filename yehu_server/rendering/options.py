@@ -10,6 +10,7 @@ from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.stage.image_sources import EARS
 from yehu_server.errors import ScoreError
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.scores.chosen_parts import MELODIC
 from yehu_server.scores.phrasing import is_fingered, phrased
 from yehu_server.scores.score import Score, concatenate, notes_of
 
@@ -35,11 +36,9 @@ class Part:
     def check_is_heard(self) -> None:
         """Check that one of the score's notes is played; raises ScoreError where it has some."""
         found = sorted({note.channel for note in notes_of(self.score)})
-        chosen = self.playing.channels
-        if chosen is None:
-            is_mpe = self.playing.mapping.mpe
-            chosen = frozenset(found if is_mpe else {*found} - {PERCUSSION_CHANNEL})
-        if not found or not chosen.isdisjoint(found):
+        chosen = MELODIC if self.playing.channels is None else self.playing.channels
+        is_mpe = self.playing.channels is None and self.playing.mapping.mpe  # a member may be 10
+        if not found or is_mpe or not chosen.isdisjoint(found):
             return
         if found == [PERCUSSION_CHANNEL]:
             raise ScoreError(

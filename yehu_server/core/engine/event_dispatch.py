@@ -124,7 +124,7 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
             price += max(0, m.commands - 1)
             hand_over(rigs, part, m)
         spend(mail.interpreting, frame, price)
-        mail.had[number] = mail.served + price
+        mail.finish_tag[number] = mail.virtual_time + price
         if is_full:
             drain(rigs, rig, mail, now)
     return end
@@ -169,11 +169,11 @@ def next_queue(mail: Any, frame: int) -> int:
             continue
         if number in (MIDI_INPUTS, SOUND_INPUT):
             return number
-        had = max(mail.had[number], mail.served)
-        is_less = had == least and mail.had[number] < mail.had[chosen]
-        if chosen < 0 or had < least or is_less:
-            chosen, least = number, had
-    mail.served = least
+        start_tag = max(mail.finish_tag[number], mail.virtual_time)
+        is_less = start_tag == least and mail.finish_tag[number] < mail.finish_tag[chosen]
+        if chosen < 0 or start_tag < least or is_less:
+            chosen, least = number, start_tag
+    mail.virtual_time = least
     return chosen
 
 

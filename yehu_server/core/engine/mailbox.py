@@ -24,11 +24,11 @@ HEAP = 1 << 14
 ROOM = 1 << 12  # entries that a heap of commands has room for before another event is interpreted
 APPLIED_AT_ONCE = 64  # commands at one frame; the rest waits for the next
 # What a live instrument does at once: events moved from each ring for each 64 frames, and commands
-# (`is_ready`). Without limit offline.
+# (`ready_at`). Without limit offline.
 LIVE_INTAKE, LIVE_BUDGET, BUDGET_PER_FRAME = 1 << 10, 1 << 8, 3
 UNLIMITED = 1 << 40
-# The writers of events, the most urgent first. Those of inputs have the time of their arrival (ns)
-# in place of a frame; pages, their number above the KIND_BITS of a kind.
+# The writers of events. Inputs give the time of arrival (ns) in place of a frame; pages put their
+# number above the KIND_BITS of a kind.
 MIDI_INPUTS, SERVER, SOUND_INPUT, PAGES = range(4)
 WRITERS = 4
 KIND_BITS = 8
@@ -65,9 +65,9 @@ MAIL = np.dtype(
         ("latest", np.int64, QUEUES),  # frame of any event since it was empty
         ("behind", np.int64, QUEUES),  # order of the last one posted after a later frame's
         ("pending_events", np.int64),  # events in all queues
-        # Commands that each queue had, and the one of whom the last event was had before it.
-        ("had", np.int64, QUEUES),
-        ("served", np.int64),
+        # Fair queueing (`next_queue`), in commands: finish tag of each queue, and virtual time.
+        ("finish_tag", np.int64, QUEUES),
+        ("virtual_time", np.int64),
         ("released", np.int64),  # note-ons that were posted before this one are not played
         ("waiting", np.int64),  # entries in the heap of commands
         ("reporting", np.int64),

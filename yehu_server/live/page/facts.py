@@ -20,7 +20,7 @@ from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live.page.examples import examples
-from yehu_server.live.page.guests import is_owners
+from yehu_server.live.page.guests import is_owner_only
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.preset_file import SAVED, Preset
 from yehu_server.params.spec import Param
@@ -55,7 +55,7 @@ def parameter(param: Param) -> dict[str, Any]:
         "label": " ".join(words).replace("_", " "),
         "index": INDEX[param.address],
         "slot": SLOT.get(param.address),
-        "isOwners": is_owners(param),
+        "isOwnerOnly": is_owner_only(param),
     }
 
 

@@ -18,7 +18,7 @@ LISTEN, PLAY, OWN = ROLES = ("listen", "play", "own")
 DIGITS = 6
 
 
-def is_owners(param: Param) -> bool:
+def is_owner_only(param: Param) -> bool:
     """Whether a parameter is of the instrument, the room or the output, and so no player's."""
     prefixes = ("/body/", "/string/", "/engine/", "/output/")
     return param.is_shared or param.address.startswith(prefixes)

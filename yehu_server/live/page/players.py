@@ -27,7 +27,7 @@ from yehu_server.core.player.commands import (
     WRITE,
 )
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.live.page.guests import LISTEN, OWN, is_owners
+from yehu_server.live.page.guests import LISTEN, OWN, is_owner_only
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.params.table import TABLE
 from yehu_server.playing.delay import Arrivals
@@ -38,7 +38,7 @@ AHEAD_S = 3.0  # by which a command may lie ahead
 MAX_EVENTS = 3  # that a command comes to
 FIRST_PART = 0
 VALUE, KEEP_HELD = 3, 1.0  # the column of a command, and what it is of a RELEASE
-OWNER_ONLY = sorted(INDEX[param.address] for param in TABLE if is_owners(param))
+OWNER_ONLY = sorted(INDEX[param.address] for param in TABLE if is_owner_only(param))
 # What a hand moves that no parameter names.
 MOVED = {
     DRAW: {INDEX[f"/bow/{name}"] for name in ("speed", "force", "assist")},
@@ -88,7 +88,7 @@ class PagePlayers:
         parts = self._played.setdefault(page, {})
         for at, kind, index, value, other in commands.tolist():
             frame = int(min(max(at, now), most))
-            target_part = FIRST_PART if kind in (WRITE, HOLD) and index in SHARED else part
+            target_part = FIRST_PART if kind == WRITE and index in SHARED else part
             latest, draws = parts.get(target_part, (frame, False))
             draws = kind == DRAW or (draws and kind != LIFT)
             parts[target_part] = max(latest, frame), draws

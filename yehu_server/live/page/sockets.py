@@ -148,28 +148,31 @@ class PageSockets:
         return True
 
     async def _pass_on(self, page: Page, commands: Any) -> None:
-        """Post commands, and send them to other pages of this part that sound; a fast one waits."""
-        count, arrived_ns = len(commands), time.monotonic_ns()
-        held = self._view.held(self._rigs[page.part])
-        commands, ends = permitted(page.role, commands, held)
+        """Post commands, some at a time, so that others have their turn; a fast page waits."""
+        arrived_ns = time.monotonic_ns()
         for begin in range(0, len(commands), AT_ONCE):
             some = commands[begin : begin + AT_ONCE]
             await self._wait(page, len(some))
-            self._players.post(page.number, page.part, some, arrived_ns)
+            self._post(page, some, arrived_ns)
+
+    def _post(self, page: Page, commands: Any, arrived_ns: int) -> None:
+        """Post what a page may command, and send it to other pages of its part that sound."""
+        held = self._view.held(self._rigs[page.part])
+        commands, ends = permitted(page.role, commands, held)
+        self._players.post(page.number, page.part, commands, arrived_ns)
         if ends:
             self._players.leave(page.number, time.monotonic_ns())
         own = self._own.get(page.part, {})
         for _, kind, index, value, _ in commands:
-            if kind in (WRITE, HOLD) and index in own:
+            if kind == WRITE and index in own:
                 own[int(index)] = value  # at once: the control process sends it later
         frame = frame_of(struct.pack("<2d", COMMANDS, page.number) + commands.tobytes())
         for other in self._pages.values():
             if len(commands) and other is not page and other.sounds and other.part == page.part:
                 write(other.transport, frame, limits.PAGE_UNSENT)
-        page.bucket.spend(count - len(commands))  # of those refused
 
     async def _wait(self, page: Page, commands: int) -> None:
-        """Wait until a page may post more commands, so that others have their turn."""
+        """Wait until a page may post more commands, also where they will be refused."""
         page.bucket.resize(max(AT_ONCE, limits.PAGE_EVENTS_AT_ONCE / len(self._pages)))
         page.bucket.spend(commands)
         while not page.transport.is_closing():

@@ -127,11 +127,11 @@ async function main() {
   showSeeing(page);
   showSounds(page);
   const lesson = showTunes(page, clear);
-  showRecording(page);
+  const heard = showRecording(page);
   showConnections(page);
   views?.showServer(page.instrument); // before anybody can touch it
   showParameters(page);
-  showGuide(page, lesson);
+  showGuide(page, lesson, heard);
 }
 
 const worker = document.querySelector('meta[name="yehu-worker"]')?.getAttribute("content");

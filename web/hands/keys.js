@@ -18,6 +18,7 @@ const FIRST_UPPER = 77;
 const OCTAVE = { Minus: -12, Equal: 12 };
 const VELOCITY = 0.63;
 const SILENCE = "Escape";
+const LEAVING = ["Enter", "Escape"]; // end what is typed in a field
 
 /** Notes of the keys, without the octave keys. */
 export const NOTES = new Map([
@@ -32,8 +33,14 @@ export function signOf(code) {
   return SIGNS[/** @type {keyof typeof SIGNS} */ (code)] ?? code.replace(/Key|Digit/, "");
 }
 
-/** Elements that take letters themselves. */
-const WRITING = "input:not([type=range], [type=checkbox], [type=radio]), select, textarea";
+/** Elements that take letters themselves. A list that is open finds by letters what it offers. */
+const TYPED = "input:not([type=range], [type=checkbox], [type=radio], [readonly]), textarea";
+const OPEN_LIST = CSS.supports("selector(:open)") ? "select:open" : "select:active";
+
+/** Text is being typed. @param {EventTarget | null} target */
+export function isWriting(target) {
+  return target instanceof Element && target.matches(`${TYPED}, ${OPEN_LIST}`);
+}
 
 export class Keys extends EventTarget {
   /** @param {Hands} hands @param {import('./scale.js').KeyTuning} tuned */
@@ -49,7 +56,7 @@ export class Keys extends EventTarget {
     onLeave(() => this.releaseAll());
     // A field that takes letters also takes the keyup.
     document.addEventListener("focusin", (event) => {
-      if (event.target instanceof Element && event.target.matches(WRITING)) this.releaseAll();
+      if (isWriting(event.target)) this.releaseAll();
     });
   }
 
@@ -64,7 +71,12 @@ export class Keys extends EventTarget {
     if (focused instanceof HTMLElement) delete focused.dataset.touched; // keys that find the way show where
     if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing) return;
     if (event.key === "?") return; // asks for help
-    if (event.target instanceof Element && event.target.matches(WRITING)) return;
+    if (isWriting(event.target)) {
+      // What was typed is done: from now on keys play again.
+      if (event.target instanceof HTMLInputElement && LEAVING.includes(event.key))
+        event.target.blur();
+      return;
+    }
     if (event.code in OCTAVE) {
       this.#shift(OCTAVE[/** @type {keyof typeof OCTAVE} */ (event.code)]);
       return;

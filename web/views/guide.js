@@ -4,7 +4,7 @@
 
 import { LASTS, Challenge, toneOf } from "../challenge.js";
 import { find, make, makeButton, words } from "../elements.js";
-import { NOTES, signOf } from "../hands/keys.js";
+import { isWriting, NOTES, signOf } from "../hands/keys.js";
 import { onLanguage, translate } from "../i18n.js";
 import { remember, settings } from "../settings.js";
 
@@ -17,8 +17,12 @@ const SLOWEST = 0.04; // m/s that is a stroke
 const HELP = "?";
 const FIRST_NOTE = 69; // that a ring invites to
 
-/** @param {Page} page @param {import('./tunes.js').Lesson} lesson */
-export function showGuide({ instrument, hands, bow, keys, yehu }, lesson) {
+/**
+ * @param {Page} page
+ * @param {import('./tunes.js').Lesson} lesson
+ * @param {Promise<void>} heard what the page's address brought, which comes first
+ */
+export function showGuide({ instrument, hands, bow, keys, yehu }, lesson, heard) {
   const stage = find("stage", HTMLElement);
   const guide = find("guide", HTMLElement);
   let at = -1; // before it, or after
@@ -111,12 +115,16 @@ export function showGuide({ instrument, hands, bow, keys, yehu }, lesson) {
   const help = () => go(at < 0 ? 1 : -1);
   find("help", HTMLButtonElement).addEventListener("click", help);
   window.addEventListener("keydown", ({ key, target }) => {
-    if (key === HELP && !(target instanceof HTMLInputElement)) help();
+    if (key === HELP && !isWriting(target)) help();
   });
   onLanguage(update);
-  if (!settings.isTaught) go(0);
+  let hasPlayed = false;
+  heard.then(() => {
+    if (!settings.isTaught && at < 0 && !lesson.course) go(hasPlayed ? 1 : 0);
+  });
 
   const begin = () => {
+    hasPlayed = true;
     find("invite", HTMLElement).hidden = true;
     notice("begin");
   };

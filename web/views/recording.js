@@ -18,9 +18,14 @@ import { CaptureWriter, Replayer, fileOf, notesAndGestures, readCapture } from "
 import { linkOf, readLink } from "../link.js";
 import { onLanguage, translate } from "../i18n.js";
 
-/** @param {Page} page */
+/**
+ * @param {Page} page
+ * @returns {Promise<void>} what the page's address brought was heard, or somebody plays instead
+ */
 export function showRecording(page) {
-  find("panel-keep", HTMLElement).append(performances(page), recording(page.instrument));
+  const { element, heard } = performances(page);
+  find("panel-keep", HTMLElement).append(element, recording(page.instrument));
+  return heard;
 }
 
 /** A name for a file of now. @param {string} ending */
@@ -109,6 +114,7 @@ function performances({ instrument, hands }) {
   /**
    * @param {import('../capture.js').Performance} performance
    * @param {string} name what is said of it
+   * @returns {Replayer}
    */
   function play(performance, name = "") {
     replayer?.stop();
@@ -126,6 +132,7 @@ function performances({ instrument, hands }) {
       load.set(false);
       if (word.textContent === playing) word.textContent = ""; // a refused file stays said
     });
+    return one;
   }
 
   /**
@@ -166,16 +173,17 @@ function performances({ instrument, hands }) {
   instrument.addEventListener("silence", () => replayer?.stop());
   // Whoever plays while it plays goes on from there.
   hands.addEventListener("play", () => replayer?.yield());
-  invite(instrument, play);
+  const heard = invite(instrument, play);
   const lack = judge(instrument, keep, (sound) => !sound || Boolean(sound.keep));
   const row = make("div", { class: "row" }, [keep, load.button, input]);
-  return section("keep.performance", note(words("keep.performance.about")), row, lack, offer, word);
+  const about = note(words("keep.performance.about"));
+  return { element: section("keep.performance", about, row, lack, offer, word), heard };
 }
 
 /**
  * Invite to listen to what the address of the page brings.
  * @param {Instrument} instrument
- * @param {(performance: import('../capture.js').Performance) => void} play
+ * @param {(performance: import('../capture.js').Performance) => Replayer} play
  */
 async function invite(instrument, play) {
   const invitation = find("invite", HTMLElement);
@@ -184,16 +192,26 @@ async function invite(instrument, play) {
     if (brought === null) return;
     const { commands, rate } = brought;
     const seconds = Math.ceil((commands.at(-1)?.frame ?? 0) / rate);
-    const listen = async () => {
-      button.remove();
-      await instrument.start();
-      if (instrument.sound) play(brought);
-    };
     const text = () => translate("keep.listen", { time: clock(seconds) });
-    const button = makeButton(text, listen, { class: "main", id: "listen" });
-    invitation.before(button);
-    invitation.hidden = true;
-    instrument.addEventListener("start", () => button.remove(), { once: true });
+    const isAsked = await new Promise((resolve) => {
+      const listen = () => {
+        button.remove();
+        resolve(true);
+        instrument.start(); // while the touch counts
+      };
+      const button = makeButton(text, listen, { class: "main", id: "listen" });
+      const begin = () => {
+        button.remove();
+        resolve(false);
+      };
+      invitation.before(button);
+      invitation.hidden = true;
+      instrument.addEventListener("start", begin, { once: true });
+    });
+    await instrument.start();
+    if (!isAsked || !instrument.sound) return;
+    const one = play(brought);
+    await new Promise((resolve) => one.addEventListener("end", resolve, { once: true }));
   } catch {
     invitation.textContent = translate("keep.broken");
   }

@@ -24,6 +24,13 @@ export function showServer(instrument) {
   instrument.others = connection;
   instrument.way = () => connection.ready; // where to sound is chosen once the server has sent its state
   showPart(connection);
+  const each = WAYS.map((way) =>
+    make("p", { class: "soft" }, [
+      make("b", {}, [words(`way.${way}`)]),
+      ": ",
+      words(`way.${way}.about`),
+    ]),
+  );
   const about = make("p", { class: "soft" });
   const state = make("p", { class: "soft", role: "status" });
   /** @type {Way | null} */
@@ -68,11 +75,11 @@ export function showServer(instrument) {
     choice.show(chosen ?? "");
     choice.buttons[WAYS.indexOf("here")].disabled = !canBeHere();
     document.documentElement.dataset.role = connection.status.role; // hides what the owner alone may do
-    about.textContent = chosen ? translate(`way.${chosen}.about`) : "";
-    if (connection.status.role !== "own") {
-      about.textContent += ` ${translate(`server.role.${connection.status.role}`)}`;
-    }
-    if (chosen && parts > 1) about.textContent += ` ${translate("server.parts")}`;
+    const { role } = connection.status;
+    about.textContent = [
+      role === "own" ? "" : translate(`server.role.${role}`),
+      parts > 1 ? translate("server.parts") : "",
+    ].join(" ");
     const own = {
       preparing: translate("server.preparing"),
       ready: "",
@@ -107,7 +114,7 @@ export function showServer(instrument) {
     update();
   });
   find("panel-connect", HTMLElement).prepend(
-    section("server.name", choice.element, about, state, askForPin(connection)),
+    section("server.name", choice.element, ...each, about, state, askForPin(connection)),
   );
 }
 

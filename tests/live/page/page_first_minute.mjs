@@ -101,14 +101,18 @@ export default async function (browser, url) {
   await page.locator("#panel-keep button[aria-pressed=true]").click();
   const link = await page.getByLabel("Link that plays it").inputValue();
   found.link = link;
+  await page.evaluate(() => localStorage.clear());
   await page.close();
 
+  // A newcomer who opens the link hears the tune first.
   const { page: friend, errors: others } = await open(browser, link);
+  found.guided = await friend.locator("#guide").isVisible();
   await friend.click("#listen");
   await friend.waitForFunction(() => globalThis.imitation);
   await requested(friend, "END", found.played.filter(([kind]) => kind === "END").length);
   found.replayed = await commands(friend);
   found.heldAfter = await held(friend);
+  await friend.waitForSelector("#guide:not([hidden])");
   await friend.close();
 
   // Somebody who touches the string while it plays goes on from there.

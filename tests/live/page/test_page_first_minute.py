@@ -58,6 +58,7 @@ def test_a_link_asks_for_what_was_played_until_one_touches_the_string(found) -> 
     late = [other[4] - one[4] for one, other in zip(played, replayed, strict=True)]
     assert max(late) - min(late) < 200  # frames, of 48000 a second
     assert found["heldAfter"] == 0
+    assert not found["guided"]
     assert len(found["link"]) < 2000
     assert found["taken"]["held"] == 1  # the own finger
     assert found["let"] == 0

@@ -92,3 +92,14 @@ def test_arrow_keys_move_a_finger_that_space_plays_and_draw_the_bow(played) -> N
     drawn, lifted = of_kind(played["bowKeys"], "DRAW", "LIFT")
     assert drawn[2] == -0.2
     assert lifted[0] == "LIFT"
+
+
+def test_keys_play_wherever_the_focus_is_unless_text_is_typed(imitated) -> None:
+    found = drive("page_keys.mjs", imitated)
+    assert found["count"] > 100
+    silent = [text for text in found["silent"] if 'type="search"' not in text]
+    assert [text for text in silent if 'type="number"' not in text] == []
+    assert [text for text in found["written"] if 'type="search"' not in text] == []
+    assert found["left"] == [True, True]
+    assert found["chosen"] == ["1", True, True]
+    assert found["errors"] == []

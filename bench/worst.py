@@ -34,7 +34,7 @@ from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.core.player.commands import BEGIN, DRAW, END, KINDS, SLIDE, WRITE
 from yehu_server.live import limits
-from yehu_server.live.audio.output import SharedMemory
+from yehu_server.live.audio.output import shared_memory
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
 from yehu_server.live.midi.routes import Router
 from yehu_server.live.page.guests import OWN, PLAY
@@ -143,12 +143,12 @@ class Stage:
 
     def __init__(self, mix: int) -> None:
         chance = self._chance = random.Random(mix)  # noqa: S311
-        memory, options = SharedMemory(), PlayingOptions()
+        memory, options = shared_memory(), PlayingOptions()
         tuned = calibration_for(RATE)
         self.ensemble, (own,) = assemble([options], RATE, [tuned], memory=memory.buffer)
         self.instrument = self.ensemble.first
         self._player = player_of(0, options, own, delay_ms=0.0)
-        view = SharedView(memory.descriptor)
+        view = SharedView(memory.handle)
         vars(view)["frame_of"] = lambda _ns: self.ensemble.frame
         self._pages = PagePlayers(view, [0])
         ring = SharedRing(memory.buffer, ring_place(MIDI_INPUTS, 0))

@@ -30,7 +30,7 @@ from yehu_server.cli import _parser, main
 from yehu_server.cli.arguments import Parser
 from yehu_server.cli.serve import _Ending
 from yehu_server.errors import DeviceError
-from yehu_server.live.audio.output import SharedMemory
+from yehu_server.live.audio.output import shared_memory
 from yehu_server.scores.score import LONGEST_DURATION_H
 from yehu_server.util.sound_file import sound_file
 
@@ -438,7 +438,7 @@ def test_a_limit_on_files_is_reported_where_it_leaves_no_memory_for_instruments(
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, before[1]))
     try:
         with pytest.raises(DeviceError, match=r"no memory of \d+ MB for .*: File too large"):
-            SharedMemory()
+            shared_memory()
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 

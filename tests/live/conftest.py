@@ -33,11 +33,11 @@ from yehu_server.live.part_addresses import part_of
 from yehu_server.live.server import Server
 from yehu_server.live.web.server import WebOptions
 from yehu_server.params.table import SLOT
-from yehu_server.playing import part_state
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import player_of
 from yehu_server.playing.player import Player
+from yehu_server.system import clocks
 
 HOST = "127.0.0.1"
 QUIET_S = 0.15  # silence after which nothing more is expected
@@ -70,7 +70,8 @@ def peer() -> FakePeer:
 @pytest.fixture
 def still_time(monkeypatch) -> StillTime:
     clock = StillTime(time.monotonic() + 100.0)  # later than anything on the true clock
-    for module in (clients, schedule, handler, part_state):
+    monkeypatch.setattr(clocks, "monotonic_ns", clock.monotonic_ns)
+    for module in (clients, schedule, handler):
         monkeypatch.setattr(module, "time", clock)
     return clock
 

@@ -25,6 +25,7 @@ from yehu_server.ahead.module import PAGE, Target, here, joined
 from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import data_folder
 from yehu_server.errors import OutputError, YehuError
+from yehu_server.system.files import LIBRARY, linker_options
 from yehu_server.util import __version__
 from yehu_server.util.files import write_bytes
 from yehu_server.util.processes import machine_lock, python_command
@@ -32,7 +33,7 @@ from yehu_server.util.processes import machine_lock, python_command
 log = logging.getLogger(__name__)
 
 PAGE_FILE, HEADER_FILE = "yehu.wasm", "yehu.h"
-LIBRARY_FILE = "libyehu.dylib" if sys.platform == "darwin" else "libyehu.so"
+LIBRARY_FILE = LIBRARY.format("yehu")
 WHATS = ("wasm", "library")
 RATES = (44100.0, 48000.0)  # Hz
 PAGE_LINKERS = ("wasm-ld", *(f"wasm-ld-{version}" for version in range(22, 13, -1)))
@@ -71,9 +72,7 @@ def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> No
 
 def link_library(linker: str, code: Path, into: Path) -> None:
     """Link an object file into a shared library; raises YehuError where it fails."""
-    options = ["-shared", "-s"]
-    if sys.platform == "linux":
-        options += ["-Wl,--build-id=none", f"-Wl,-soname,{into.name}"]
+    options = ["-shared", "-s", *linker_options(into.name)]
     run_compiler([linker, *options, str(code), "-o", str(into)])
 
 

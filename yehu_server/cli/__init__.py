@@ -18,9 +18,9 @@ from yehu_server.cli.config import parse
 from yehu_server.cli.render_pipe import BROKEN_PIPE
 from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn
 from yehu_server.errors import YehuError
+from yehu_server.system.processes import on_termination
 from yehu_server.util import __version__
 from yehu_server.util.files import error_reason
-from yehu_server.util.signals import on_termination
 
 OF_ALL: tuple[list[str], ...] = (
     [],

@@ -22,6 +22,7 @@ from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.live.part_addresses import group_of
 from yehu_server.params.table import TABLE
+from yehu_server.system.terminals import complete_by
 
 if TYPE_CHECKING:
     from yehu_server.live.osc.command_client import OscClient
@@ -104,17 +105,10 @@ def _ask(client: OscClient, arguments: argparse.Namespace) -> None:
 
 
 def _complete() -> None:
-    try:
-        import readline
-    except ImportError:  # not on every system
-        return
-
     addresses = [param.address for param in TABLE if not param.player_controlled]
 
     def complete(text: str, state: int) -> str | None:
         fitting = [address for address in addresses if address.startswith(text)]
         return fitting[state] if state < len(fitting) else None
 
-    readline.set_completer(complete)
-    readline.set_completer_delims(" ")
-    readline.parse_and_bind("tab: complete")
+    complete_by(complete)

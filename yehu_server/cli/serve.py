@@ -35,33 +35,21 @@ from yehu_server.cli.terminal import (
 )
 from yehu_server.errors import YehuError
 from yehu_server.live.network import lan_address, lan_interface
-from yehu_server.util.signals import on_termination
+from yehu_server.system import processes
+from yehu_server.system.processes import on_termination
 
 if TYPE_CHECKING:
     from yehu_server.live.page.pages import PageOptions
-
-try:
-    import resource
-except ImportError:  # not on Windows, where there is no such limit
-    resource = None  # type: ignore[assignment]
 
 MAX_FILES = 4096  # more than all clients together need
 
 
 def allow_files(needed: int) -> None:
     """Raise the limit of open files as far as allowed; raises YehuError where it is too low."""
-    if resource is None:
-        return
-    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    unlimited = resource.RLIM_INFINITY
-    most = MAX_FILES if hard == unlimited else min(hard, MAX_FILES)
-    if soft != unlimited and soft < most:
-        with contextlib.suppress(OSError, ValueError):
-            resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
-            soft = most
-    if soft != unlimited and soft < needed:
+    allowed = processes.allow_files(MAX_FILES)
+    if allowed is not None and allowed < needed:
         raise YehuError(
-            f"{soft} open files are too few: {needed} are needed (raise the limit: ulimit -n)"
+            f"{allowed} open files are too few: {needed} are needed (raise the limit: ulimit -n)"
         )
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-import stat
 import time
 from functools import cache
 from importlib.metadata import version
@@ -17,6 +16,7 @@ from pathlib import Path
 
 from platformdirs import user_cache_dir
 
+from yehu_server.system.files import may_others_write
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of
 
@@ -70,10 +70,7 @@ OTHERS = "others may write there, and its code would be run"
 
 def _is_others(folder: Path) -> bool:
     """Whether another user, but for root, may write to a folder."""
-    status = folder.stat()
-    if not hasattr(os, "getuid"):
-        return False
-    return status.st_uid not in (0, os.getuid()) or bool(status.st_mode & stat.S_IWOTH)
+    return may_others_write(folder.stat())
 
 
 def _open_cache() -> str:

@@ -16,7 +16,6 @@ import functools
 import io
 import json
 import logging
-import os
 import pickle
 import zlib
 from collections.abc import Iterable
@@ -24,6 +23,8 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.compile import cache_folder, levels
+from yehu_server.system import clocks
+from yehu_server.system.files import c_library
 from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 
 log = logging.getLogger(__name__)
@@ -130,8 +131,8 @@ def _load(functions: list[list[Any]], code: bytes) -> dict[str, int]:
     machine = binding.Target.from_default_triple().create_target_machine(jit=True)
     engine = binding.create_mcjit_compiler(binding.parse_assembly(""), machine)
     _engines.append(engine)
-    library = ctypes.CDLL(None if os.name == "posix" else "msvcrt")
-    abort = ctypes.cast(library.abort, ctypes.c_void_p).value or 0
+    clocks.provide()
+    abort = ctypes.cast(c_library().abort, ctypes.c_void_p).value or 0
     for name in NEVER_CALLED:
         binding.add_symbol(name, abort)
     found, begin = {}, 0

@@ -161,7 +161,7 @@ class Server:
     def _pages(self) -> Pages | None:
         if self.options.page is None:
             return None
-        memory = self.output.memory.descriptor
+        memory = self.output.memory
         return Pages(
             self.players, self.options.page, memory, self._sound, self._on_message, self._rigs
         )
@@ -169,7 +169,7 @@ class Server:
     def _midi(self) -> MidiPorts | None:
         if not self.options.midi:
             return None
-        memory = self.output.memory.descriptor
+        memory = self.output.memory
         return MidiPorts(self.players, self.options.midi, memory, self._rigs, self._on_message)
 
     def _voice(self) -> VoiceInput | None:

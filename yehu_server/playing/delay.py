@@ -70,7 +70,7 @@ class Arrivals:
 
     Small corrections of the clock must not swap messages that arrive close together.
 
-    `frame_at`: returns the frame for a ``time.monotonic_ns()``, such as `Player.frame_of`.
+    `frame_at`: returns the frame for a `clocks.monotonic_ns`, such as `Player.frame_of`.
     `rate` (Hz).
     """
 

@@ -6,7 +6,6 @@ What was posted is answered until the audio side has it; then its records are.
 from __future__ import annotations
 
 import math
-import time
 from collections import Counter
 from collections.abc import Mapping as Values
 from collections.abc import Sequence
@@ -28,6 +27,7 @@ from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.sources import NOTE, POLY_PRESSURE, STEPS, VELOCITY, is_address
+from yehu_server.system import clocks
 
 UNMAPPED = Mapping("", ())
 ELSEWHERE = -1  # the channel of notes that do not come from MIDI
@@ -106,8 +106,8 @@ class PartState:
         return self.instrument.delay
 
     def frame_of(self, arrived_ns: int | None = None) -> int:
-        """The frame for a message that arrived at this ``time.monotonic_ns()``; by default, now."""
-        moment = time.monotonic_ns() if arrived_ns is None else arrived_ns
+        """The frame for a message that arrived at this `clocks.monotonic_ns`; by default, now."""
+        moment = clocks.monotonic_ns() if arrived_ns is None else arrived_ns
         return int(self.instrument.frame_at(moment)) + self.delay
 
     # -- parameters --------------------------------------------------------------------------

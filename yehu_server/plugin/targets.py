@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import platform
-import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from yehu_server import system
 
 if TYPE_CHECKING:  # the command line reads the names, and does not wait for LLVM
     from yehu_server.ahead.module import Target
@@ -51,7 +52,7 @@ class System:
         """Whether it is this machine's own system."""
         from llvmlite import binding
 
-        return self.triple == binding.get_process_triple() and sys.platform == "linux"
+        return self.triple == binding.get_process_triple() and system.NAME == "linux"
 
     def target(self, *, wide: bool) -> Target:
         """What LLVM makes one of its versions for."""
@@ -93,9 +94,8 @@ ALL = "all"
 
 def usual() -> str:
     """The name of this machine's own system."""
-    if sys.platform == "darwin":
-        return "macos"
-    return "linux-arm" if platform.machine() in {"aarch64", "arm64"} else "linux"
+    is_arm = platform.machine() in {"aarch64", "arm64"}
+    return "linux-arm" if is_arm and system.NAME == "linux" else system.NAME
 
 
 def systems_of(name: str) -> list[System]:

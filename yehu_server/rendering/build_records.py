@@ -17,11 +17,12 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import OutputError
+from yehu_server.system.files import open_at_once
+from yehu_server.system.locks import lock
 from yehu_server.util.files import (
     MAX_LINE_BYTES,
     error_reason,
     make_folder,
-    open_at_once,
     open_regular,
     read_lines,
     read_text,
@@ -183,11 +184,7 @@ def alone_in(folder: Path) -> Iterator[None]:
         raise OutputError(f"{folder}: cannot write: {error_reason(error)}") from error
     with file:
         try:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except ImportError:  # not on Windows
-            pass
+            lock(file.fileno())
         except BlockingIOError:
             raise OutputError(f"{folder}: another command writes to it") from None
         except OSError:  # a disk without locks

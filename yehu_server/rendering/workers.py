@@ -20,8 +20,8 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from yehu_server.errors import YehuError
+from yehu_server.system.processes import on_termination, terminate_main_thread
 from yehu_server.util.files import error_reason
-from yehu_server.util.signals import on_termination
 
 ProgressCallback = Callable[[float, float], None]  # what is done, and of what
 Perform = Callable[[Any, ProgressCallback], Any]
@@ -148,8 +148,7 @@ def _listen(connection: Connection, tasks: queue.SimpleQueue[Any]) -> None:
             tasks.put((connection.recv(),))
     except (EOFError, OSError):
         tasks.put(None)
-        if hasattr(signal, "pthread_kill"):
-            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGTERM)
+        terminate_main_thread()
 
 
 def _interrupt(*_: object) -> None:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from yehu_server.errors import OutputError
+from yehu_server.system.files import is_own, open_at_once
 from yehu_server.util import PACKAGE
 
 MAX_TEXT_BYTES = 64 * 2**20
@@ -29,11 +30,6 @@ MAX_NAME_BYTES = 200  # of the 255 that file systems have, with room for an endi
 MAX_SHOWN = 40  # characters of other names in errors
 LEFTOVER = re.compile(r"\.yehu-server-[0-9a-f]{16}\.part")
 LEFTOVER_AFTER_S = 24 * 3600.0  # without a write; a process may be stopped for hours
-
-
-def open_at_once(path: str, flags: int) -> int:
-    """Open without blocking: opening a pipe would wait for its other end."""
-    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def open_regular(path: Path, most_bytes: int | None = None) -> BinaryIO:
@@ -301,9 +297,11 @@ def _remove_leftovers(folder: Path) -> None:
 
 
 def _is_old(status: os.stat_result) -> bool:
-    is_own = not hasattr(os, "getuid") or status.st_uid == os.getuid()
-    is_file = stat.S_ISREG(status.st_mode)
-    return is_own and is_file and time.time() - status.st_mtime > LEFTOVER_AFTER_S
+    return (
+        is_own(status)
+        and stat.S_ISREG(status.st_mode)
+        and time.time() - status.st_mtime > LEFTOVER_AFTER_S
+    )
 
 
 def write_bytes(target: Path, data: bytes, *, overwrite: bool = True) -> Path:

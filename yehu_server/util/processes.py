@@ -21,6 +21,9 @@ from functools import partial
 from pathlib import Path
 from typing import IO, Any
 
+from yehu_server.system.files import open_private
+from yehu_server.system.locks import lock, unlock
+from yehu_server.system.processes import enlarge_pipe, spawn_options
 from yehu_server.util import PACKAGE
 from yehu_server.util.retry import Backoff, run_forever
 
@@ -31,8 +34,6 @@ log = logging.getLogger(__name__)
 # Python's threads take short turns, so that a busy one does not delay the others.
 SWITCH_INTERVAL_S = 0.0001
 EXIT_S = 1.0  # for a process to end by itself
-PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
-F_SETPIPE_SZ = 1031  # of Linux
 LOCK_S = 300.0  # for a lock: longer than a slow machine compiles
 LOCK_EVERY_S = 0.05  # between two attempts
 
@@ -72,10 +73,11 @@ class Child:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
-            pass_fds=share,
-            start_new_session=True,  # Ctrl-C is for the parent
+            **spawn_options(share),
         )
-        self._enlarge_pipe()
+        if self._process.stdout is not None:
+            with contextlib.suppress(OSError):  # it need not wait while we are stopped
+                enlarge_pipe(self._process.stdout)
         events = threading.Thread(target=self._listen, name=f"{self._name} events", daemon=True)
         logger = threading.Thread(target=self._log_stderr, name=f"{self._name} log", daemon=True)
         try:
@@ -87,6 +89,11 @@ class Child:
                 if pipe is not None:
                     pipe.close()
             raise
+
+    @property
+    def pid(self) -> int:
+        """The number of the process."""
+        return self._process.pid
 
     @property
     def is_alive(self) -> bool:
@@ -123,14 +130,6 @@ class Child:
         if pipe is not None:
             with self._sending, contextlib.suppress(OSError):
                 pipe.close()
-
-    def _enlarge_pipe(self) -> None:
-        """Enlarge the pipe of events, so that the process does not block while we are stopped."""
-        with contextlib.suppress(ImportError, OSError, AttributeError):
-            from fcntl import fcntl
-
-            if sys.platform == "linux" and self._process.stdout is not None:
-                fcntl(self._process.stdout, F_SETPIPE_SZ, PIPE_BYTES)
 
     def _listen(self) -> None:
         try:
@@ -266,31 +265,26 @@ def machine_lock(folder: Path, name: str, within_s: float = LOCK_S) -> Iterator[
     path = folder / f"{name}-{platform.node()}.lock"
     with contextlib.ExitStack() as stack:
         try:
-            import fcntl
-
             folder.mkdir(parents=True, exist_ok=True)
-            flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
-            file = os.open(path, flags, 0o600)
+            file = open_private(str(path))
             stack.callback(os.close, file)
             if _locked(file, within_s):
-                stack.callback(fcntl.flock, file, fcntl.LOCK_UN)  # also where a fork has the file
+                stack.callback(unlock, file)
             else:
                 log.warning(
                     "%s: held for %.0f s by another process; not waited for", path, within_s
                 )
-        except (ImportError, OSError):  # each compiles for itself then
+        except OSError:  # each compiles for itself then
             pass
         yield
 
 
 def _locked(file: int, within_s: float) -> bool:
     """Lock an open file; whether it could be within a time."""
-    import fcntl
-
     end = time.monotonic() + within_s
     while True:
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock(file)
         except BlockingIOError:
             if time.monotonic() >= end:
                 return False

@@ -23,12 +23,12 @@ from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.packets import pack, unpack
 from yehu_server.live.part_addresses import part_of
 from yehu_server.params.table import PREFIX, TABLE, UNIT
-from yehu_server.playing import part_state
 from yehu_server.playing.mapping import load
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import player_of
 from yehu_server.playing.player import Player
 from yehu_server.playing.preset_folders import Presets
+from yehu_server.system import clocks
 
 MAX_PACKETS = 200
 ADDRESSES = [
@@ -74,7 +74,7 @@ def still_time() -> Iterator[StillTime]:
         patch.object(clients, "time", clock),
         patch.object(schedule, "time", clock),
         patch.object(osc, "time", clock),
-        patch.object(part_state, "time", clock),
+        patch.object(clocks, "monotonic_ns", clock.monotonic_ns),
         patch.dict(os.environ, XDG_CONFIG_HOME=str(home)),
     ):
         yield clock

@@ -11,6 +11,7 @@ from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed
 from yehu_server.live.midi.input_process import ACTIVE_SENSING, SENSE_EVERY_S, Input, Inputs
 from yehu_server.live.midi.routes import Router
+from yehu_server.system import clocks
 
 MS = 1_000_000
 
@@ -32,7 +33,7 @@ class Controller:
         self.now_ns = 100_000 * MS
         self.posted: list[str] = []
         monkeypatch.setattr(input_process.time, "monotonic", lambda: 1e-9 * self.now_ns)
-        monkeypatch.setattr(input_process.time, "monotonic_ns", lambda: self.now_ns)
+        monkeypatch.setattr(clocks, "monotonic_ns", lambda: self.now_ns)
         ring = SimpleNamespace(post=self.post)
         feed = MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)
         order = {"patterns": [], "others": True, "virtual": None, "api": None}

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from wire import FakePeer
 
 from yehu_server.live import limits
-from yehu_server.live.osc import work_queue
 from yehu_server.live.osc.work_queue import SLICE_NS, TURN_NS, Shares, WorkQueue
+from yehu_server.system import clocks
 
 SHORT_NS, LONG_NS = SLICE_NS // 100, SLICE_NS + SLICE_NS // 2
 ONE, TWO, THREE = (FakePeer(port) for port in (1, 2, 3))
@@ -52,7 +52,7 @@ class Done:
 @pytest.fixture
 def done(monkeypatch) -> Done:
     done = Done()
-    monkeypatch.setattr(work_queue, "time", done)
+    monkeypatch.setattr(clocks, "monotonic_ns", done.monotonic_ns)
     return done
 
 
@@ -93,7 +93,7 @@ def test_who_sends_little_is_served_soon_whatever_others_have_waiting(done, size
 def test_what_one_sends_keeps_its_order_whoever_else_sends(said):
     with pytest.MonkeyPatch.context() as patch:
         done = Done()
-        patch.setattr(work_queue, "time", done)
+        patch.setattr(clocks, "monotonic_ns", done.monotonic_ns)
         for peer, letters in said:
             done.add(peer, letters)
         done.work()

@@ -23,7 +23,7 @@ def test_the_module_is_looked_for_and_compiled_only_once_a_page_is_opened(monkey
         "guests": None,
         "open_notes": YEHU.open_notes,
         "reaches": YEHU.reaches,
-        "memory": 0,
+        "memory": (0, 1),
         "rigs": [0],
     }
     pages = process.Pages(order)

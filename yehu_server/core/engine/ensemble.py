@@ -119,7 +119,7 @@ class Ensemble:
         return lost + int(self._stage["invalid_samples"])
 
     def frame_at(self, time_ns: int) -> float:
-        """The frame that is played at a time of ``time.monotonic_ns()``."""
+        """The frame that is played at a time of `clocks.monotonic_ns`."""
         return self.first.frame_at(time_ns)
 
     def frames(self, ms: float) -> int:

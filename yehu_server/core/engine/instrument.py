@@ -369,7 +369,7 @@ class Instrument:
         return self._meters[0]
 
     def frame_at(self, time_ns: int) -> float:
-        """The frame that is played at a time of ``time.monotonic_ns()``."""
+        """The frame that is played at a time of `clocks.monotonic_ns`."""
         return float(native.frame_at.call(self._clock, time_ns))
 
     def follow_clock(self, address: int) -> None:

@@ -7,19 +7,17 @@ of them, so the audio thread flushes them to zero.
 from __future__ import annotations
 
 import platform
-import sys
 import time
 from typing import Any
 
 from yehu_server.compile.jit import Deferred, imported, intrinsic
+from yehu_server.system import clocks
 
 # Imported where something is compiled.
 ir = Deferred(lambda: imported("llvmlite.ir"))
 types = Deferred(lambda: imported("numba").types)
 cgutils = Deferred(lambda: imported("numba.core.cgutils"))
 
-# Clocks of clock_gettime; time.monotonic_ns() reads the first.
-MONOTONIC, THREAD_CPU = (8, 16) if sys.platform == "darwin" else (1, 3)
 # x86: FTZ and DAZ (flush to zero, denormals are zero) in MXCSR; ARM: FZ in FPCR.
 X86_BITS, ARM_BIT = 0x8040, 1 << 24
 
@@ -29,22 +27,12 @@ def _no_mode(_mode: int = 0) -> int:
     return 0
 
 
-def _clock(codegen: Any, builder: Any, number: int) -> Any:
-    word = ir.IntType(64)
-    time = cgutils.alloca_once(builder, ir.ArrayType(word, 2))  # a struct timespec
-    kind = ir.FunctionType(ir.IntType(32), [ir.IntType(32), time.type])
-    function = cgutils.get_or_insert_function(builder.module, kind, "clock_gettime")
-    builder.call(function, [ir.Constant(ir.IntType(32), number), time])
-    seconds, ns = (builder.load(cgutils.gep_inbounds(builder, time, 0, i)) for i in (0, 1))
-    return builder.add(builder.mul(seconds, ir.Constant(word, 1_000_000_000)), ns)
-
-
-@intrinsic(plain=time.monotonic_ns)
+@intrinsic(plain=clocks.monotonic_ns)
 def monotonic_ns(_context: Any) -> Any:
-    """The time of ``time.monotonic_ns()``, the same in all processes."""
+    """The time of `clocks.monotonic_ns`, the same in all processes."""
 
-    def generate(codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
-        return _clock(codegen, builder, MONOTONIC)
+    def generate(_codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        return clocks.monotonic_code(builder)
 
     return types.int64(), generate
 
@@ -53,8 +41,8 @@ def monotonic_ns(_context: Any) -> Any:
 def thread_cpu_ns(_context: Any) -> Any:
     """CPU time of this thread (ns)."""
 
-    def generate(codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
-        return _clock(codegen, builder, THREAD_CPU)
+    def generate(_codegen: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        return clocks.thread_cpu_code(builder)
 
     return types.int64(), generate
 

@@ -9,10 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import mmap
-import os
 import queue
-import tempfile
 import threading
 import time
 from collections.abc import Callable
@@ -24,6 +21,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.errors import DeviceError
 from yehu_server.live.audio.devices import OUTPUT
+from yehu_server.system.memory import SharedMemory
 from yehu_server.util.files import error_reason
 from yehu_server.util.processes import Child, Message
 from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, run_forever
@@ -39,31 +37,15 @@ AGAIN_AFTER_S, AGAIN_AFTER_AT_MOST_S = 1.0, 30.0
 LONGEST_LAG_S = 0.5  # beyond it, the silent clock does not catch up
 
 
-class SharedMemory:
-    """Memory for instruments and their stage, which child processes can map by its descriptor."""
-
-    def __init__(self, parts: int = 1) -> None:
-        self.size = memory_bytes(parts)
-        if hasattr(os, "memfd_create"):
-            self.descriptor = os.memfd_create("yehu-server")
-        else:
-            with tempfile.TemporaryFile() as file:
-                self.descriptor = os.dup(file.fileno())
-        try:
-            os.ftruncate(self.descriptor, self.size)
-        except OSError as error:  # such as a limit on files, which holds for memory too
-            os.close(self.descriptor)
-            size = f"{self.size / 1e6:.0f} MB"
-            raise DeviceError(
-                f"no memory of {size} for instruments: {error_reason(error)}"
-            ) from error
-        self.buffer = mmap.mmap(self.descriptor, self.size)
-
-    def close(self) -> None:
-        """Close the descriptor; the memory is freed with the last process that has mapped it."""
-        if self.descriptor >= 0:
-            os.close(self.descriptor)
-        self.descriptor = -1
+def shared_memory(parts: int = 1) -> SharedMemory:
+    """Memory for instruments and their stage; raises DeviceError where there is not so much."""
+    size = memory_bytes(parts)
+    try:
+        return SharedMemory(size)
+    except OSError as error:  # such as a limit on files, which holds for memory too
+        raise DeviceError(
+            f"no memory of {size / 1e6:.0f} MB for instruments: {error_reason(error)}"
+        ) from error
 
 
 class SilentClock:
@@ -130,7 +112,7 @@ class Output:
     def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:
         self._options = options
         self._changed = changed
-        self.memory = SharedMemory(options.parts)
+        self.memory = shared_memory(options.parts)
         self.state = OutputState()
         self._events: queue.Queue[Message] = queue.Queue()
         self._child: Child | None = None
@@ -196,7 +178,7 @@ class Output:
         self._events = queue.Queue()
         try:
             self._child = Child(
-                "yehu_server.live.audio.stream", self._events.put, share=[self.memory.descriptor]
+                "yehu_server.live.audio.stream", self._events.put, share=self.memory.inherited
             )
         except SHORTAGES as error:
             self._give_up(
@@ -214,8 +196,7 @@ class Output:
         self._child.send(
             "open",
             kind=OUTPUT,
-            memory=self.memory.descriptor,
-            size=self.memory.size,
+            memory=self.memory.handle,
             rate=ensemble.rate,
             blocksize=self._options.blocksize,
             latency=self._options.latency,

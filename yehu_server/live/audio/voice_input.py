@@ -11,11 +11,12 @@ from typing import Any
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.voice.note_detection import VOICE_CHANNEL, VOICE_KEYS, ends_of
 from yehu_server.live.audio.devices import INPUT
-from yehu_server.live.audio.output import OutputOptions, SharedMemory
+from yehu_server.live.audio.output import OutputOptions
 from yehu_server.playing.options import AS_IT_SINGS, PlayingOptions
 from yehu_server.playing.part_state import Key
 from yehu_server.playing.player import Player
 from yehu_server.playing.tuning import KEYS, STANDARD_A4
+from yehu_server.system.memory import SharedMemory
 from yehu_server.util.processes import Child, Message, Supervisor
 
 ADVICE = "wear headphones, or it follows itself"
@@ -56,7 +57,7 @@ class VoiceInput(Supervisor):
         on_message: Callable[[str], None],
     ) -> None:
         module = "yehu_server.live.audio.stream"
-        super().__init__(module, "voice", on_message, [memory.descriptor])
+        super().__init__(module, "voice", on_message, memory.inherited)
         self._player, self._options = player, options
         self._output, self._memory = output, memory
         self._fields = ends_of(player.notes) | tuned_as(playing)
@@ -86,8 +87,7 @@ class VoiceInput(Supervisor):
             child.send(
                 "open",
                 kind=INPUT,
-                memory=self._memory.descriptor,
-                size=self._memory.size,
+                memory=self._memory.handle,
                 rate=event["rate"],
                 blocksize=self._output.blocksize,
                 latency=self._output.latency,

@@ -7,7 +7,6 @@ this process ends, and a new one takes its place.
 
 from __future__ import annotations
 
-import mmap
 import os
 import sys
 import threading
@@ -20,6 +19,8 @@ from yehu_server.errors import ParameterError
 from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
 from yehu_server.live.midi.jack_watch import JackWatch
 from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted
+from yehu_server.system import clocks
+from yehu_server.system.memory import open_shared
 from yehu_server.util.processes import SWITCH_INTERVAL_S, Message, Parent
 
 POLL_EVERY_S = 0.5
@@ -55,7 +56,7 @@ class Input:
         midi.set_callback(self._receive)
 
     def _receive(self, event: tuple[Sequence[int], float], _data: Any = None) -> None:
-        at = time.monotonic_ns()
+        at = clocks.monotonic_ns()
         data = event[0]
         self.heard_s = 1e-9 * at
         if data[0] == ACTIVE_SENSING:
@@ -69,7 +70,7 @@ class Input:
         """End the notes of the port where active sensing has stopped."""
         if self._senses and time.monotonic() - self.heard_s > SENSE_WITHIN_S:
             self._senses = False
-            self._feed.end_port_notes(self.name, time.monotonic_ns(), is_gone=False)
+            self._feed.end_port_notes(self.name, clocks.monotonic_ns(), is_gone=False)
             self._parent.send("silent", port=self.name)
 
     def close(self) -> None:
@@ -116,7 +117,7 @@ class Inputs:
             gone |= {name for name, port in self._open.items() if port.full_name in left}
         for name in gone:
             self._open.pop(name).close()
-            self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
+            self._feed.end_port_notes(name, clocks.monotonic_ns(), is_gone=True)
             self._parent.send("vanished", port=name)
         self._refused = {name: at for name, at in self._refused.items() if name in stable}
         early = time.monotonic() - AGAIN_S
@@ -142,7 +143,7 @@ class Inputs:
         pause_s = self._measure_pause()
         if pause_s > SLEPT_S and self._open:
             for name in list(self._open):
-                self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=False)
+                self._feed.end_port_notes(name, clocks.monotonic_ns(), is_gone=False)
             self._parent.send("slept", seconds=pause_s)
         for port in list(self._open.values()):
             port.sense()
@@ -192,7 +193,7 @@ class Inputs:
             else:
                 port.midi.open_port(port.midi.get_ports().index(full_name), name=name[:32])
         except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
-            self._feed.end_port_notes(name, time.monotonic_ns(), is_gone=True)
+            self._feed.end_port_notes(name, clocks.monotonic_ns(), is_gone=True)
             self._refuse(name, str(error))
             return
         self._refused.pop(name, None)
@@ -262,7 +263,7 @@ def api_name(number: int) -> str:
 
 def _feed(order: Message) -> MidiFeed:
     """Make the feed that an order describes."""
-    memory = mmap.mmap(order["memory"], os.fstat(order["memory"]).st_size)
+    memory = open_shared(order["memory"])
     rings = [SharedRing(memory, place) for place in order["rings"]]
     routes = [Route(*route) for route in order["routes"]]
     router = Router(routes, len(rings), order["known"])

@@ -15,6 +15,7 @@ from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.live.midi.routes import Route, Router
 from yehu_server.playing.player import Player
+from yehu_server.system.memory import SharedMemory
 from yehu_server.util.processes import Child, Message, Supervisor
 
 log = logging.getLogger(__name__)
@@ -36,7 +37,7 @@ class MidiPorts(Supervisor):
     Its messages reach the audio callback by shared memory; the server receives them only where
     something is to be learned.
 
-    `memory`: file descriptor of the memory that has the instruments.
+    `memory`: the memory that has the instruments.
     `rigs`: the first instrument of each part.
     `on_message`: called with a line when a port or the MIDI system appears or disappears; from
     another thread.
@@ -46,12 +47,12 @@ class MidiPorts(Supervisor):
         self,
         players: Sequence[Player],
         options: MidiOptions,
-        memory: int,
+        memory: SharedMemory,
         rigs: Sequence[int],
         on_message: Callable[[str], None],
     ) -> None:
         module = "yehu_server.live.midi.input_process"  # it ends as JACK's server does
-        super().__init__(module, "MIDI inputs", on_message, [memory])
+        super().__init__(module, "MIDI inputs", on_message, memory.inherited)
         self._players = players
         self._router = Router(options.routes, len(players))
         self._memory, self._rigs = memory, rigs
@@ -85,7 +86,7 @@ class MidiPorts(Supervisor):
             routes=[astuple(route) for route in options.routes],
             known=self._router.others,
             numbers=self._numbers,
-            memory=self._memory,
+            memory=self._memory.handle,
             rings=[ring_place(MIDI_INPUTS, rig) for rig in self._rigs],
             message=MESSAGE,
             disconnect=DISCONNECT,

@@ -1,25 +1,17 @@
-"""Open the sockets for OSC; read the kernel's time stamps; who uses an address."""
+"""Open the sockets for OSC, and find out who uses an address."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import socket
-import struct
-import sys
-from collections.abc import Sequence
 
 from yehu_server.errors import DeviceError, YehuError
-from yehu_server.live import limits
 from yehu_server.live.network import format_address
 from yehu_server.live.osc.command_client import OscClient
 from yehu_server.util.files import error_reason
 
 TRIES_FOR_A_PORT = 20
-# Linux's numbers of options that Python's socket module does not name.
-SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 33, 35, 40
-STAMP, COUNT = struct.Struct("@ll"), struct.Struct("@I")  # struct timespec, of the kernel
-CONTROL_BYTES = socket.CMSG_SPACE(STAMP.size) + socket.CMSG_SPACE(COUNT.size)
 # Of who is asked at an address in use.
 ANSWERS_WITHIN_S = 0.3
 BESIDE = "--osc :9010 --http :9011"
@@ -51,37 +43,6 @@ def _bind(family: int, host: str, port: int) -> tuple[socket.socket, socket.sock
         tcp.listen()
         undo.pop_all()
     return udp, tcp
-
-
-def prepare(udp: socket.socket) -> int:
-    """Ask for a large receive buffer, and for the kernel's time stamps and counts of drops.
-
-    Returns the size of the buffer that is granted (bytes).
-    """
-    with contextlib.suppress(OSError):
-        udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, limits.SOCKET_BUFFER)
-    if sys.platform == "linux":
-        with contextlib.suppress(OSError):  # with privileges only
-            udp.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, limits.SOCKET_BUFFER)
-        for option in (SO_TIMESTAMPNS, SO_RXQ_OVFL):
-            with contextlib.suppress(OSError):
-                udp.setsockopt(socket.SOL_SOCKET, option, 1)
-    return udp.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
-
-
-def stamp_and_drops(controls: Sequence[tuple[int, int, bytes]]) -> tuple[int, int]:
-    """What the kernel adds to a datagram (`prepare`), each 0 where it does not.
-
-    That is the time of arrival (ns since 1970), and how many it has dropped since the start.
-    """
-    stamp_ns = drops = 0
-    for _level, kind, data in controls:
-        if kind == SO_TIMESTAMPNS and len(data) == STAMP.size:
-            seconds, ns = STAMP.unpack(data)
-            stamp_ns = seconds * 10**9 + ns
-        elif kind == SO_RXQ_OVFL and len(data) == COUNT.size:
-            (drops,) = COUNT.unpack(data)
-    return stamp_ns, drops
 
 
 def by_whom(error: OSError, host: str, port: int) -> str:

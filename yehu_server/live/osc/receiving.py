@@ -20,7 +20,7 @@ from functools import lru_cache, partial
 from yehu_server.live import limits
 from yehu_server.live.network import Address, Allowed, is_here
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.open_sockets import CONTROL_BYTES, open_both, prepare, stamp_and_drops
+from yehu_server.live.osc.open_sockets import open_both
 from yehu_server.live.osc.peers import (
     FramingError,
     Peer,
@@ -30,6 +30,8 @@ from yehu_server.live.osc.peers import (
     answer_bucket,
 )
 from yehu_server.live.osc.work_queue import Calls, WorkQueue
+from yehu_server.system import clocks
+from yehu_server.system.sockets import prepare, receive
 
 log = logging.getLogger(__name__)
 
@@ -65,7 +67,7 @@ class OscPorts:
         self._selector = selectors.DefaultSelector()
         self.port = int(self._udp.getsockname()[1])
         self.host = str(self._udp.getsockname()[0])
-        self.traffic.buffer_bytes = prepare(self._udp)
+        self.traffic.buffer_bytes = prepare(self._udp, limits.SOCKET_BUFFER)
         for opened, read in ((self._udp, self._read_datagrams), (self._tcp, self._accept)):
             opened.setblocking(False)
             self._selector.register(opened, selectors.EVENT_READ, read)
@@ -90,7 +92,7 @@ class OscPorts:
 
     def receive(self, packet: bytes, peer: Peer) -> None:
         """Take a packet that a WebSocket received; any thread may call."""
-        arrived_ns = time.monotonic_ns()
+        arrived_ns = clocks.monotonic_ns()
 
         def take_in() -> None:
             self.traffic.packets += 1
@@ -133,19 +135,19 @@ class OscPorts:
 
     def _read_datagrams(self, _events: int) -> None:
         """Queue some of the waiting datagrams."""
-        to_monotonic_ns = time.monotonic_ns() - time.time_ns()
+        to_monotonic_ns = clocks.monotonic_ns() - time.time_ns()
         for _ in range(AT_ONCE):
             try:
-                packet, controls, flags, address = self._udp.recvmsg(limits.DATAGRAM, CONTROL_BYTES)
+                datagram = receive(self._udp, limits.DATAGRAM)
             except BlockingIOError:
                 return
             except OSError as error:  # an earlier answer was refused at its port
                 log.debug("OSC: %s", error)
                 continue
-            arrived_ns, (stamp_ns, drops) = time.monotonic_ns(), stamp_and_drops(controls)
-            if stamp_ns:
-                arrived_ns = min(stamp_ns + to_monotonic_ns, arrived_ns)
-            self.traffic.kernel_drops = drops or self.traffic.kernel_drops
+            arrived_ns, (packet, address) = clocks.monotonic_ns(), datagram[:2]
+            if datagram.stamp_ns:
+                arrived_ns = min(datagram.stamp_ns + to_monotonic_ns, arrived_ns)
+            self.traffic.kernel_drops = datagram.drops or self.traffic.kernel_drops
             is_own = address[1] == self.port and is_here(address[0])  # subscribed to itself
             if is_own or address[0] not in self._allowed:
                 self.traffic.refused += 1
@@ -153,8 +155,7 @@ class OscPorts:
             self.traffic.packets += 1
             peer = self._peer(address)
             steps = self._handler.handle(packet, peer, arrived_ns)
-            is_whole = not flags & socket.MSG_TRUNC
-            if not (is_whole and self._queue.add(steps, peer, len(packet))):
+            if not (datagram.is_whole and self._queue.add(steps, peer, len(packet))):
                 self.traffic.excess += 1
 
     def _new_peer(self, address: Address) -> UdpPeer:
@@ -224,7 +225,7 @@ class OscPorts:
         except OSError:
             data = b""
         if data:
-            steps = self._handle_stream(data, peer, time.monotonic_ns())
+            steps = self._handle_stream(data, peer, clocks.monotonic_ns())
             self._queue.add(steps, peer, len(data), always=True)
         else:
             self.drain_and_close(peer)

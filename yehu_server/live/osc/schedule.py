@@ -18,6 +18,7 @@ from yehu_server.live.osc.work_queue import Shares
 from yehu_server.live.part_addresses import PART, part_of
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.player import Player
+from yehu_server.system import clocks
 
 AHEAD_S = 0.01  # scheduled messages are posted so long before they are due
 SAME_MOMENT_NS, TRIES = 100_000, 10
@@ -27,9 +28,9 @@ LARGEST_DRIFT_S = 0.001
 def both_clocks() -> tuple[float, int]:
     """The system's clock (s since 1970) and the monotonic clock (ns) at the same moment."""
     for _ in range(TRIES):
-        before = time.monotonic_ns()
+        before = clocks.monotonic_ns()
         now_s = time.time()
-        if time.monotonic_ns() - before < SAME_MOMENT_NS:  # the thread was not held up in between
+        if clocks.monotonic_ns() - before < SAME_MOMENT_NS:  # the thread was not held up in between
             break
     return now_s, before
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import contextlib
 import socket
-import time
 from collections import OrderedDict, deque
 from collections.abc import Callable, Iterator
 
 from yehu_server.live import limits
 from yehu_server.live.osc.peers import Peer
+from yehu_server.system import clocks
 
 TURN_NS, SLICE_NS = 2_000_000, 500_000  # of one call of `work`, and of one sender's turn in it
 DONE = object()
@@ -79,7 +79,7 @@ class WorkQueue:
 
     def work(self) -> None:
         """Do what waits, for up to TURN_NS; work that fails is gone."""
-        now = time.monotonic_ns()
+        now = clocks.monotonic_ns()
         until = now + TURN_NS
         while self._works and now < until:
             peer, works = next(iter(self._works.items()))
@@ -95,7 +95,7 @@ class WorkQueue:
                         self._shares.give_back(peer, size)
                         if not works:
                             del self._works[peer]
-                now = time.monotonic_ns()
+                now = clocks.monotonic_ns()
 
 
 class Calls:

@@ -5,22 +5,20 @@ The process of its own has the lowest priority: it must not disturb whoever play
 
 from __future__ import annotations
 
-import os
 import tempfile
 from pathlib import Path
 
 from yehu_server.ahead.build import page_module
 from yehu_server.errors import YehuError
 from yehu_server.live.page.examples import write_capture_headers
+from yehu_server.system.processes import LOWEST, lower_priority
 from yehu_server.util.processes import Parent
-
-LOWEST = 19
 
 
 def main() -> None:
     """Send the parent process small files, and then the module's path or why there is none."""
     parent = Parent()
-    os.nice(LOWEST)
+    lower_priority(LOWEST)
     try:
         with tempfile.TemporaryDirectory(prefix="yehu-page-") as folder:
             for file in write_capture_headers(Path(folder)):

@@ -17,6 +17,8 @@ from yehu_server.live.page.players import CHANNELS, FIRST
 from yehu_server.live.web.server import listen
 from yehu_server.playing.parts import SECTION
 from yehu_server.playing.player import Player
+from yehu_server.system import sockets
+from yehu_server.system.memory import SharedMemory
 from yehu_server.util.processes import Child, Supervisor
 
 STATUS_S = 0.5
@@ -39,7 +41,7 @@ class Pages(Supervisor):
     Raises DeviceError where the address is in use or not this machine's.
 
     `players`: the player of each part.
-    `memory`: file descriptor of the memory that has the instruments.
+    `memory`: the memory that has the instruments.
     `status`: what pages are sent of the server, of JSON's types; any thread may call.
     `on_message`: called with a line when the process had to be started again; from another thread.
     `rigs`: the instrument that shows each part.
@@ -49,7 +51,7 @@ class Pages(Supervisor):
         self,
         players: Sequence[Player],
         options: PageOptions,
-        memory: int,
+        memory: SharedMemory,
         status: Callable[[], Mapping[str, Any]],
         on_message: Callable[[str], None],
         rigs: Sequence[int],
@@ -67,7 +69,7 @@ class Pages(Supervisor):
                 raise
             self._listening = listen(NAME, host, 0)
         self.host, self.port = self._listening.getsockname()[:2]
-        share = [memory, self._listening.fileno()]
+        share = [*memory.inherited, *sockets.inherited(self._listening)]
         super().__init__("yehu_server.live.page.process", "pages", on_message, share)
 
     def stop(self) -> None:
@@ -78,13 +80,12 @@ class Pages(Supervisor):
     def attend(self, child: Child, gone: threading.Event) -> None:
         """Send the process what to serve, and the status whenever it is another."""
         allowed = list(self._options.networks)
-        listening = self._listening.fileno()
         guests = self._options.guests
         child.send(
             "serve",
-            memory=self._memory,
+            memory=self._memory.handle,
             rigs=self._rigs,
-            socket=listening,
+            socket=sockets.share(self._listening, child.pid),
             allowed=allowed,
             guests=None if guests is None else asdict(guests),
             open_notes=self._players[0].notes.open_notes,

@@ -81,7 +81,7 @@ class PagePlayers:
         `part`: counted from 0; what all parts share goes to the first.
         `commands` (ndarray [shape=(n, 5)]): frame, kind, index, value and other of each, as
         ``sockets.read_commands`` has them.
-        `arrived_ns`: when they came (``time.monotonic_ns()``).
+        `arrived_ns`: when they came (`clocks.monotonic_ns`).
         """
         now = self._arrivals.frame_of(arrived_ns)
         most = now + round(AHEAD_S * self._view.rate)

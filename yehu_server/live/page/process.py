@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import socket
 import threading
 from collections.abc import Iterator
 from functools import partial
@@ -24,6 +23,8 @@ from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
 from yehu_server.live.page.sockets import PageSockets
 from yehu_server.live.web.request_filter import Connections, check, own_names, serve_http
+from yehu_server.system.processes import LOWER, lower_priority
+from yehu_server.system.sockets import shared
 from yehu_server.util.processes import Child, Message, Parent
 
 NICE = 5  # after the processes that play
@@ -35,7 +36,7 @@ class Pages:
     """The site, the WebSockets, and what the control process sends them."""
 
     def __init__(self, order: Message) -> None:
-        self._listening = socket.socket(fileno=order["socket"])
+        self._listening = shared(order["socket"])
         self._allowed = Allowed(order["allowed"])
         guests = order["guests"]
         self._admission = Admission(None if guests is None else Guests(**guests))
@@ -109,7 +110,7 @@ class Pages:
 def main() -> None:
     """Serve the parent process until it closes the pipe."""
     parent = Parent()
-    os.nice(NICE)
+    lower_priority(LOWER)
     orders = parent.orders()
     pages = Pages(next(orders))
     threading.Thread(target=partial(pages.take_orders, orders), daemon=True).start()

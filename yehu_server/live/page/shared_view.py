@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import mmap
-import os
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
@@ -24,6 +22,7 @@ from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.stage.record import STAGE, TAPE
 from yehu_server.params.table import TABLE
+from yehu_server.system.memory import Handle, open_shared
 
 Array = Any
 
@@ -36,11 +35,11 @@ SHARED_INDICES = [INDEX[param.address] for param in TABLE if param.is_shared]
 class SharedView:
     """Instruments on a stage in shared memory, while another process plays them.
 
-    `descriptor`: file descriptor of the memory.
+    `handle`: of the memory.
     """
 
-    def __init__(self, descriptor: int) -> None:
-        self._memory = mmap.mmap(descriptor, os.fstat(descriptor).st_size)
+    def __init__(self, handle: Handle) -> None:
+        self._memory = open_shared(handle)
         count = int(np.frombuffer(self._memory, RIG, count=1)["parts"][0, 0])
         self._rigs = np.frombuffer(self._memory, RIG, count=count)
         self._stage = np.frombuffer(self._memory, STAGE, offset=count * RIG_BYTES, count=1)[0]
@@ -54,7 +53,7 @@ class SharedView:
         return float(self._rigs["model"]["rate"][0])
 
     def frame_of(self, arrived_ns: int) -> int:
-        """The frame at which a message sounds that arrived at this ``time.monotonic_ns()``."""
+        """The frame at which a message sounds that arrived at this `clocks.monotonic_ns`."""
         delay = int(self._rigs["mail"]["delay"][0, 0])
         return int(native.frame_at.call(self._address, arrived_ns)) + delay
 

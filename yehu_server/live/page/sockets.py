@@ -27,6 +27,7 @@ from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitt
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.web.frames import TEXT, frame_of, messages, write
 from yehu_server.params.table import TABLE
+from yehu_server.system import clocks
 from yehu_server.util.token_bucket import TokenBucket
 
 SNAPSHOT, COMMANDS = 0.0, 1.0
@@ -109,7 +110,7 @@ class PageSockets:
             del self._pages[socket]
             if not self._pages:
                 self._has_pages.clear()
-            self._players.leave(page.number, time.monotonic_ns())
+            self._players.leave(page.number, clocks.monotonic_ns())
             text = frame_of(json.dumps({"left": page.number}).encode(), TEXT)
             for other in self._pages.values():
                 write(other.transport, text, limits.PAGE_UNSENT)
@@ -149,7 +150,7 @@ class PageSockets:
 
     async def _pass_on(self, page: Page, commands: Any) -> None:
         """Post commands, some at a time, so that others have their turn; a fast page waits."""
-        arrived_ns = time.monotonic_ns()
+        arrived_ns = clocks.monotonic_ns()
         for begin in range(0, len(commands), AT_ONCE):
             some = commands[begin : begin + AT_ONCE]
             await self._wait(page, len(some))
@@ -161,7 +162,7 @@ class PageSockets:
         commands, ends = permitted(page.role, commands, held)
         self._players.post(page.number, page.part, commands, arrived_ns)
         if ends:
-            self._players.leave(page.number, time.monotonic_ns())
+            self._players.leave(page.number, clocks.monotonic_ns())
         own = self._own.get(page.part, {})
         for _, kind, index, value, _ in commands:
             if kind == WRITE and index in own:

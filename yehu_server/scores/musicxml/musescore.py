@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.reader import read_musicxml
 from yehu_server.scores.score import errors_name, read_score_bytes
 from yehu_server.scores.written.notated import MAX_BYTES, Written
+from yehu_server.system.processes import needs_no_screen
 
 # The newest first: an older one does not read its files. `mscore` is MuseScore 2 on Debian.
 PROGRAMS = (
@@ -51,9 +51,7 @@ def export(path: Path, target: Path) -> None:
             "there: File, Export, MusicXML"
         )
     words = [program, "-o", str(target), str(path.resolve())]
-    # A program with windows starts without a screen, too.
-    bare = sys.platform == "linux" and SCREENS.isdisjoint(os.environ)
-    environment = os.environ | ({"QT_QPA_PLATFORM": "offscreen"} if bare else {})
+    environment = needs_no_screen() | os.environ
     try:
         subprocess.run(  # noqa: S603 - no shell
             words, check=True, capture_output=True, timeout=LONGEST_S, env=environment

@@ -1,0 +1,97 @@
+"""The clocks that all processes of a machine share, in Python and for compiled code."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+import time
+from typing import Any
+
+# `time.monotonic_ns` has steps of 16 ms on Windows before Python 3.13.
+monotonic_ns = time.perf_counter_ns if sys.platform == "win32" else time.monotonic_ns
+"""The time since some moment (ns), the same in all processes of the machine."""
+
+# Clocks of clock_gettime. `monotonic_ns` reads the first.
+MONOTONIC, THREAD_CPU = (8, 16) if sys.platform == "darwin" else (1, 3)
+NS = 1_000_000_000  # in a second
+FILETIME_NS = 100
+THIS_THREAD = -2  # what Windows' GetCurrentThread returns, always
+WINDOWS_CLOCKS = ("QueryPerformanceCounter", "QueryPerformanceFrequency", "GetThreadTimes")
+
+
+def provide() -> None:
+    """Let compiled code of this process find the functions that its clocks call."""
+    if sys.platform == "win32":
+        from llvmlite import binding
+
+        kernel = ctypes.WinDLL("kernel32")
+        for name in WINDOWS_CLOCKS:
+            binding.add_symbol(name, ctypes.cast(getattr(kernel, name), ctypes.c_void_p).value)
+
+
+def monotonic_code(builder: Any) -> Any:
+    """Generate code that reads `monotonic_ns`, as an integer of LLVM."""
+    return _counter(builder) if sys.platform == "win32" else _posix(builder, MONOTONIC)
+
+
+def thread_cpu_code(builder: Any) -> Any:
+    """Generate code that reads the CPU time of its thread (ns; Windows: in steps of 16 ms)."""
+    return _thread_times(builder) if sys.platform == "win32" else _posix(builder, THREAD_CPU)
+
+
+def _posix(builder: Any, number: int) -> Any:
+    from llvmlite import ir
+
+    word = ir.IntType(64)
+    times = _place(builder, ir.ArrayType(word, 2))  # a struct timespec
+    _call(builder, "clock_gettime", ir.Constant(ir.IntType(32), number), times)
+    seconds, ns = (_load(builder, times, index) for index in (0, 1))
+    return builder.add(builder.mul(seconds, ir.Constant(word, NS)), ns)
+
+
+def _counter(builder: Any) -> Any:
+    """What `time.perf_counter_ns` computes: ticks, by their number in a second."""
+    from llvmlite import ir
+
+    word = ir.IntType(64)
+    read = []
+    for name in WINDOWS_CLOCKS[:2]:
+        place = _place(builder, ir.ArrayType(word, 1))
+        _call(builder, name, place)
+        read.append(_load(builder, place, 0))
+    ticks, per_second = read
+    second = ir.Constant(word, NS)
+    whole = builder.mul(builder.sdiv(ticks, per_second), second)
+    rest = builder.mul(builder.srem(ticks, per_second), second)
+    return builder.add(whole, builder.sdiv(rest, per_second))
+
+
+def _thread_times(builder: Any) -> Any:
+    from llvmlite import ir
+
+    word = ir.IntType(64)
+    times = [_place(builder, ir.ArrayType(word, 1)) for _ in ("created", "ended", "kernel", "user")]
+    thread = builder.inttoptr(ir.Constant(word, THIS_THREAD), times[0].type)
+    _call(builder, WINDOWS_CLOCKS[2], thread, *times)
+    kernel, user = (_load(builder, times[index], 0) for index in (2, 3))
+    return builder.mul(builder.add(kernel, user), ir.Constant(word, FILETIME_NS))
+
+
+def _place(builder: Any, kind: Any) -> Any:
+    from numba.core import cgutils
+
+    return cgutils.alloca_once(builder, kind)
+
+
+def _load(builder: Any, place: Any, index: int) -> Any:
+    from numba.core import cgutils
+
+    return builder.load(cgutils.gep_inbounds(builder, place, 0, index))
+
+
+def _call(builder: Any, name: str, *arguments: Any) -> Any:
+    from llvmlite import ir
+    from numba.core import cgutils
+
+    kind = ir.FunctionType(ir.IntType(32), [argument.type for argument in arguments])
+    builder.call(cgutils.get_or_insert_function(builder.module, kind, name), arguments)

@@ -5,7 +5,7 @@
 Nanoseconds of processor time a frame. Each row of the tune has all that the rows above it have, and
 one thing more. The rows are measured in turn, round after round, so that a slow minute of the
 machine meets all of them; what a row adds is the median of its differences within a round, given
-with the quartiles. `scripts/generate` puts the saved budget into docs/performance.md. With
+with the quartiles. `scripts/generate` puts the saved budget into bench/results/performance.md. With
 `--beside` the same is measured of another checkout (one of before), in a process of its own, a row
 of each in turn. Where memory and stack of a process lie makes it up to 5 % faster or slower, so
 each few rounds have processes of their own. Only processor time of the thread that computes

@@ -7,7 +7,7 @@ of ours is measured in turn with a run of the yardstick, round after round, by t
 the thread that computes; whole renders by the clock, the yardstick then being a process of its own
 that writes nothing. Other kernels too are timed by the processor, and starts by the clock. Every
 figure is the median of several, with the extremes.
-`scripts/generate` puts saved figures into docs/performance.md.
+`scripts/generate` puts saved figures into bench/results/performance.md.
 """
 
 from __future__ import annotations

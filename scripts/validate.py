@@ -1,4 +1,4 @@
-"""Measure what docs/validation.md states, and write its tables and figures.
+"""Measure what bench/results/validation.md states, and write its tables and figures.
 
     .venv/bin/python scripts/validate.py measure   # half an hour on two cores
     .venv/bin/python scripts/validate.py write

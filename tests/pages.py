@@ -57,6 +57,7 @@ PAGES = [
     for path in (
         *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md")),
         *sorted((ROOT / "docs").rglob("*.md")),
+        *sorted((ROOT / "bench" / "results").glob("*.md")),
         *(ROOT / folder / "README.md" for folder in ("mappings", "presets", "tunings")),
     )
 ]

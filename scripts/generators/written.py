@@ -21,7 +21,12 @@ from yehu_server.playing.calibration_store import SHIPPED as CALIBRATIONS
 from yehu_server.plugin.parameters import parameters
 from yehu_server.surfaces.catalogue import SURFACES, is_up_to_date
 
-PAGES = ("*.md", "docs/**/*.md", "mappings/*.md", "presets/*.md", "tunings/*.md")
+PAGES = (
+    "*.md",
+    "docs/**/*.md",
+    "bench/results/*.md",
+    *(f"{folder}/*.md" for folder in ("mappings", "presets", "tunings")),
+)
 RECORDS = ROOT / "yehu_server" / "core" / "physics" / "records.py"
 NUMBERS = ROOT / "tests" / "plugin" / "numbers.txt"
 

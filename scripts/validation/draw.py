@@ -1,4 +1,4 @@
-"""The figures of docs/validation.md."""
+"""The figures of bench/results/validation.md."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tables of docs/validation.md."""
+"""The tables of bench/results/validation.md."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from validation.ideal import exponent
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"
+PAGE = Path(__file__).resolve().parents[2] / "bench" / "results" / "validation.md"
 FINEST = "rate 352800"
 KINDS = {
     "rate 44100": "44.1 kHz",

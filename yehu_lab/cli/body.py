@@ -1,4 +1,4 @@
-"""Fit a body to measurements of a fiddle, and see the result.
+"""Fit a body to measurements of your fiddle, and show it.
 
   yehu-server body taps -o taps
   yehu-server body fit taps/*.wav --channels force=32,velocity=0.5,pressure=4 -o mine.toml
@@ -38,7 +38,7 @@ def add_to(commands: Any) -> None:
     parser = add_command(commands, "body", __doc__)
     actions = add_actions(parser)
     _add_fit(actions)
-    show = add_action(actions, "show", _show, "show a body, beside what was measured")
+    show = add_action(actions, "show", _show, "show a body next to its measurement")
     add_options(
         show,
         "body FILE: an instrument file or a body file (default: the body that is shipped)",
@@ -47,20 +47,20 @@ def add_to(commands: Any) -> None:
     add_options(
         show,
         """
-        -o --output PNG: draw it, to this picture
-        --overwrite: replace another file
+        -o --output PNG: draw the body to this picture
+        --overwrite: replace an existing file
         --json: print one JSON object
         """,
         output=target,
     )
-    taps = add_action(actions, "taps", _taps, "write taps of the shipped body, to try this with")
+    taps = add_action(actions, "taps", _taps, "write example taps of the shipped body")
     add_options(
         taps,
         """
         -o --output FOLDER: folder for the sound files; created if missing
-        --count N: taps (default: 5)
-        --noise-db DB: how far noise lies below the signals (default: 40)
-        --overwrite: replace files that are there
+        --count N: number of taps (default: 5)
+        --noise-db DB: level of the noise, dB below the signals (default: 40)
+        --overwrite: replace existing files
         """,
         output={"required": True, "type": target},
         count={"type": positive, "default": 5},
@@ -76,17 +76,17 @@ def _add_fit(actions: Any) -> None:
         measurements FILE: taps as sound files or .csv, or responses as .csv or .uff
         -o --output OUT: an instrument file, .toml, with its body file beside it; or a body file,
             .json
-        --radiation FILE: measurements of which the sound pressure alone is used
+        --radiation FILE: measurements of the sound pressure, apart from the others
         --channels NAME=UNITS,...: what the channels of sound files are, and their SI units at full
             scale: force, velocity, acceleration, displacement, pressure or none
         --radiation-channels NAME=UNITS,...: what the channels of --radiation are, and their SI
             units at full scale: force, velocity, acceleration, displacement, pressure or none
-        --kind: what the responses of a .csv or .uff are that does not say
-        --sensor-mass GRAMS: of an accelerometer on the bridge, whose effect is taken off
-        --band LO:HI: frequencies to fit, Hz (default: from 100 to where the hammer excites)
-        --modes N: number of bridge modes (default: as many as show)
-        --plot PNG: draw measured and fitted, too
-        --overwrite: replace other files, too
+        --kind: what the responses of a .csv or .uff file measure, where the file does not say
+        --sensor-mass GRAMS: mass of the accelerometer on the bridge, whose effect is removed
+        --band LO:HI: frequencies to fit, in Hz (default: from 100 to where the hammer excites)
+        --modes N: number of bridge modes (default: as many as the measurement shows)
+        --plot PNG: also draw the measurement and the fit
+        --overwrite: replace existing files
         --json: print one JSON object when done
         """,
         measurements={"nargs": "*", "type": Path},

@@ -1,6 +1,6 @@
-"""Make labelled sounds for learners, drawn at random as a description says.
+"""Make a data set of labelled sounds for machine learning, drawn at random by a description.
 
-They come with the forces, positions and velocities behind them, and the regime of the string.
+Each sound comes with its forces, positions and velocities, and with the regime of the string.
 
   yehu-server dataset examples/dataset.toml -o strokes
   yehu-server dataset examples/dataset.toml -o strokes --count 100000 --dask tcp://10.0.0.1:8786
@@ -49,12 +49,12 @@ def add_to(commands: Any) -> None:
         __doc__,
         run,
     )
-    add_options(parser, "description DESCRIPTION.toml: what is drawn, and how", description=Path)
+    add_options(parser, "description DESCRIPTION.toml: what to draw, and how", description=Path)
     add_folder(parser)
     add_options(
         parser,
         """
-        --count N: number of sounds, in place of the file's
+        --count N: number of sounds (default: as the description says)
         --jobs N: number of cores (default: all)
         """,
         count=positive,

@@ -1,8 +1,7 @@
-"""Find how each note of an instrument is best bowed.
+"""Find how each note of an instrument is best bowed, and write a bowing table for --practice.
 
-It is played after others, at several places, speeds and pressures of the bow, until it speaks as
-well as can be found; what was learnt is written, for --practice. Beside an instrument file
-NAME.toml, NAME.practice.json is taken without that.
+Each note is played after others, at several places, speeds and pressures of the bow. Other commands
+find NAME.practice.json by themselves beside an instrument file NAME.toml.
 
   yehu-server practise -o mine.json
   yehu-server practise --instrument heavy_bridge.toml -o heavy_bridge.practice.json
@@ -10,9 +9,8 @@ NAME.toml, NAME.practice.json is taken without that.
   yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
   yehu-server render tune.mid -o tune.wav --practice mine.json
 
-Goes on from the practice beside the instrument file, where there is one, or begins with what comes
-with this version; takes a quarter of an hour or more on two cores. The usual instrument comes
-practised.
+It takes a quarter of an hour or more on two cores. It goes on from the table beside the instrument
+file, or from the shipped one. The yehu comes practised.
 """
 
 from __future__ import annotations

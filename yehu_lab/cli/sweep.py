@@ -1,7 +1,7 @@
-"""Bow the strokes of a study, or vary a gesture, on all cores, and name the regime of each.
+"""Bow all strokes of a study, or variations of a gesture, on all cores, and judge each.
 
-When it began, pitch, level and brightness come with it, in one file. An interrupted sweep goes on
-with the same command. `sweep show FILE` draws the result.
+The result has the kind of motion (regime) of each stroke, its onset, pitch, level and brightness.
+The same command continues an interrupted sweep. `sweep show FILE` draws the result.
 
   yehu-server sweep examples/studies/schelleng.toml -o schelleng.npz
   yehu-server sweep show schelleng.npz -o schelleng.png
@@ -45,12 +45,13 @@ def add_to(commands: Any) -> None:
     add_options(
         parser,
         """
-        study STUDY: a study (TOML), or a gesture (JSON) to --vary
+        study STUDY: a study (TOML), or a gesture (JSON) with --vary
         -o --output FILE: the result to write, .npz
-        --vary NAME=VALUES ...: V1,V2,... or FROM:TO:STEPS or FROM:TO:STEPS:log; may be repeated
-        --signals FOLDER: also keep all signals of each stroke, as `simulate` does
-        --energy: with --signals: the energy ledger too
-        --strings EVERY: with --signals: the shapes of the strings every EVERY samples
+        --vary NAME=VALUES ...: values to try, as V1,V2,... or FROM:TO:STEPS or FROM:TO:STEPS:log;
+            may be repeated
+        --signals FOLDER: also keep all signals of each stroke, as yehu-server simulate does
+        --energy: with --signals: also the energy ledger
+        --strings EVERY: with --signals: also the shapes of the strings, every EVERY samples
         --workers N: number of strokes at a time (default: one per core)
         """,
         study=Path,

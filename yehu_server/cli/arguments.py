@@ -65,8 +65,8 @@ def add_cluster(group: Any) -> None:
     add_options(
         group,
         """
-        --dask ADDRESS: do the jobs on a cluster: the address of its Dask scheduler, such as
-            tcp://10.0.0.1:8786, or the file it wrote (needs yehu-server[cluster])
+        --dask ADDRESS: run on a cluster: the address of its Dask scheduler, such as
+            tcp://10.0.0.1:8786, or the scheduler file (needs yehu-server[cluster])
         """,
     )
 
@@ -101,7 +101,7 @@ class Parser(argparse.ArgumentParser):
         """
         parser = Parser(
             prog=f"{self.prog} {word}",
-            description=f"{text.capitalize()}.",
+            description=f"{text[0].upper()}{text[1:]}.",
             formatter_class=HelpFormatter,
             allow_abbrev=False,
         )
@@ -164,15 +164,15 @@ def add_actions(parser: argparse.ArgumentParser) -> Any:
 
 def add_action(actions: Any, name: str, run: Callable[[argparse.Namespace], int], text: str) -> Any:
     """Add an action of a command, with its help as the description; return its parser."""
-    return add_command(actions, f"{name}: {text}", f"{text.capitalize()}.", run)
+    return add_command(actions, f"{name}: {text}", f"{text[0].upper()}{text[1:]}.", run)
 
 
 def add_instrument(parser: argparse.ArgumentParser) -> None:
     """Add the option that names an instrument file."""
     add_options(
         parser,
-        "--instrument FILE: a TOML or JSON file of any two-stringed fiddle: what it has other than "
-        "a yehu, such as strings (docs/physics.md)",
+        "--instrument FILE: instrument file (TOML or JSON) of another two-stringed fiddle: how it "
+        "differs from the yehu, such as its strings (docs/physics.md)",
         instrument=Path,
     )
 
@@ -203,7 +203,7 @@ def add_output(
         parser,
         f"""
         -o --output OUT: the sound file to write{more}
-        --overwrite: replace OUT whatever it is (default: only files made by render and replay)
+        --overwrite: replace OUT, whatever it is (default: only files that render and replay made)
         """,
         output={"required": True, "type": kind},
     )

@@ -6,7 +6,7 @@
   yehu-server follow hum.wav -o hum.jsonl
   yehu-server follow hum.wav -o played.flac --plot played.png
 
-It needs yehu-server[follow]. docs/follow.md describes what it hears, and how well.
+This needs yehu-server[follow]. docs/follow.md describes what it hears, and how well.
 """
 
 from __future__ import annotations
@@ -58,18 +58,19 @@ def add_to(commands: Any) -> None:
     add_options(
         parser, "recording IN: a sound file of one voice, such as WAV or FLAC", recording=Path
     )
-    add_output(parser, more=", by its ending: .wav or .flac; .mid, notes; .jsonl, a capture")
+    add_output(parser, more=": .wav or .flac; or .mid for notes, .jsonl for a capture")
     add_options(
         parser,
         f"""
-        --transpose SEMITONES: play so much higher, -60 to 60 (default: by octaves, into range)
-        --correct SHARE: how far notes are moved to the tuning: 0 to 1 (default: 0, as it was sung)
-        --keep-vibrato: with --correct, move notes as they are (default: their vibrato and slides
-            get narrower, too)
-        --style: how much of its loudness and attacks is played: exact all, gentle some, even none
-            (default: exact)
+        --transpose SEMITONES: transpose the recording, -60 to 60 (default: by octaves, into the
+            range)
+        --correct SHARE: pitch correction, 0 as sung to 1 in tune (default: 0)
+        --keep-vibrato: with --correct, keep vibrato and slides as they are (default: they get
+            narrower, too)
+        --style: how closely loudness and attacks follow the recording: exact, gentle (in part) or
+            even (not at all) (default: exact)
         --max-duration HOURS: refuse a recording that lasts longer (default: {MAX_DURATION_H:g})
-        --plot PNG: also draw the pitch and level that were heard and that are played
+        --plot PNG: also draw pitch and level, as heard and as played
         --subtype: sample format (default: 24 bits)
         """,
         transpose=number_within(-60.0, 60.0, "semitones"),

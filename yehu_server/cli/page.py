@@ -1,6 +1,6 @@
-"""Show the instrument as a web page to this machine, until Ctrl-C, or write the page.
+"""Show the instrument as a web page on this machine until Ctrl-C, or write the page.
 
-What is written are static files, which may be put on any web server.
+The written page is static files, for any web server.
 
   yehu-server page --open
   yehu-server page -o public/yehu

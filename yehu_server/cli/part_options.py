@@ -33,8 +33,8 @@ def add_parts(group: Any) -> None:
         group,
         f"""
         --parts N: number of players on the stage, each with an instrument, 1 to {MAX} (default: 1)
-        --part N=PORT[:CHANNEL] ...: part N is played from inputs with these words in their name, or
-            one channel of them; may be repeated (default: the first input plays part 1, the second
+        --part N=PORT[:CHANNEL] ...: inputs that play part N, by words of their name, or one channel
+            of them; may be repeated (default: the first input plays part 1, the second
             part 2, ...)
         --part-mapping N=FILE ...: mapping of part N (default: that of --mapping); may be repeated
         --part-instrument N=FILE ...: instrument of part N (default: that of --instrument); may be
@@ -43,7 +43,7 @@ def add_parts(group: Any) -> None:
             repeated
         --part-set N=ADDRESS=VALUE ...: hold a parameter of part N, such as 2=/room/pan=-0.5; may be
             repeated
-        --dry: no room, and bodies that sound alike to both sides
+        --dry: no room, and the same sound on both sides
         """,
         parts={"type": whole_within(1, MAX, f"parts: a stage has 1 to {MAX}"), "default": 1},
         part=_numbered,

@@ -28,13 +28,13 @@ def add_playing(group: Any) -> None:
     add_options(
         group,
         """
-        --practice FILE: how notes are bowed: what yehu-server practise wrote (default:
-            NAME.practice.json beside an instrument file NAME.toml, or as shipped)
+        --practice FILE: bowing table, as yehu-server practise writes it (default:
+            NAME.practice.json beside an instrument file NAME.toml, else the shipped one)
         --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1; may
             be repeated
-        --open-strings: when the note of the open outer string, C5 of a yehu, is played on that, not
-            on the inner one (default: always)
-        --seed N: seed of the random variation between notes, 0 to 65535 (default: 0)
+        --open-strings: when C5 (of a yehu) is played on the open outer string, and not stopped on
+            the inner one (default: always)
+        --seed N: seed of the random variation of the player, 0 to 65535 (default: 0)
         """,
         practice=Path,
         open_strings={"choices": ("always", "on-pitch", "never"), "default": "always"},
@@ -47,13 +47,13 @@ def add_tables(group: Any) -> None:
     add_options(
         group,
         f"""
-        --mapping FILE: what controllers move: the name of a mapping, mine/NAME for one of yours, or
-            a file (default: keyboard)
+        --mapping FILE: what controllers move: the name of a mapping (mine/NAME for one of yours),
+            or a file (default: keyboard)
         --mpe: start with one MPE zone of 15 member channels; without --mapping, use the mapping
             named mpe
-        --preset NAME: the sound to start with: the name of a preset, or a file (see yehu-server
-            presets); a plus takes several together, such as sul-tasto+hall (default: of serve
-            without --mapping and --mpe, {FIRST_LIVE}; else none)
+        --preset NAME: sound to start with: the name of a preset, or a file; several with a plus,
+            such as sul-tasto+hall (default: {FIRST_LIVE} for serve without --mapping and --mpe,
+            else none; see yehu-server presets)
         --programs: let MIDI program changes select presets (default: they are ignored)
         """,
     )
@@ -66,8 +66,8 @@ def add_tables(group: Any) -> None:
     add_tuning(group)
     add_options(
         group,
-        "--range: what happens to notes outside those of the instrument, F4 to F6 of a yehu "
-        "(default: transpose, by octaves)",
+        "--range: what to do with notes outside the range of the instrument, F4 to F6 of a yehu: "
+        "transpose by octaves, clamp to the nearest note, or skip (default: transpose)",
         range={"choices": ("transpose", "clamp", "skip"), "default": "transpose"},
     )
 
@@ -77,10 +77,10 @@ def add_tuning(group: Any) -> None:
     add_options(
         group,
         """
-        --tuning FILE.scl: a Scala scale, or the name of a shipped one, from C up (default: equal
-            temperament)
-        --keyboard-map FILE.kbm: a Scala keyboard map, or the name of a shipped one; it fixes the
-            pitch in Hz
+        --tuning FILE.scl: Scala scale, with C as its first note: a file, or the name of a shipped
+            one (default: equal temperament)
+        --keyboard-map FILE.kbm: Scala keyboard map, which also fixes the pitch: a file, or the name
+            of a shipped one
         """,
         tuning=Path,
         keyboard_map=Path,

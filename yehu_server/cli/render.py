@@ -55,21 +55,21 @@ def add_to(commands: Any) -> None:
     add_options(
         parser,
         f"""
-        --format: file format (default: by the ending of OUT); raw, samples alone, for -o -
-        --subtype: sample format (default: 24 bits; of raw, float)
+        --format: file format (default: by the ending of OUT); raw: samples alone, for -o -
+        --subtype: sample format (default: 24 bits; float for raw)
         --channel N: play only this MIDI channel, 1 to 16; may be repeated (default: all but 10)
-        --part NAME ...: play this part, by its name, the beginning of that, or its number; may be
-            repeated (default: of a written score the first, of a MIDI file all)
-        --phrasing SHARE: how much plain notes are shaped, by phrases, accents, slurs, vibrato and
-            slides; what a file marks stays: 0 to 1 (default: 0.5; 0: exactly as written)
+        --part NAME ...: play this part, by its name, the beginning of its name, or its number; may
+            be repeated (default: the part that carries the tune; of MIDI files whose tracks take
+            turns, all)
+        --phrasing SHARE: how much the player shapes plain notes (phrases, accents, slurs, vibrato,
+            slides), 0 to 1; marks in the score stay; 0 plays exactly what is written (default: 0.5)
         --rubato SHARE: tempo flexibility within phrases and at the end, 0 to 1; 0 is strict time
             (default: as --phrasing)
-        --song N: play only the N-th song of each file, where a file has several (default: one after
-            another)
-        --strict: refuse MIDI files with any damage, with exit code 1 (default: warn)
-        --max-duration HOURS: refuse MIDI files that last longer together (default:
-            {MAX_DURATION_H:g})
-        --plot PNG: also draw level, pitch asked and played, and spectrogram
+        --song N: play only the N-th song of each file (default: all songs, one after another)
+        --strict: refuse damaged MIDI files, and scores with marks that are not understood, with
+            exit code 1 (default: warn)
+        --max-duration HOURS: refuse scores that last longer in total (default: {MAX_DURATION_H:g})
+        --plot PNG: also draw level, intended and measured pitch, and spectrogram
         """,
         format={"choices": (*FORMATS, "raw")},
         subtype={"choices": tuple(SUBTYPES)},

@@ -1,4 +1,4 @@
-"""Render a capture of serve: the same samples, on the same build.
+"""Render a captured session to a sound file: the same samples, on the same build.
 
   yehu-server serve --capture session.jsonl --record session.wav
   yehu-server replay session.jsonl -o again.wav
@@ -30,7 +30,7 @@ MAX_DURATION_H = 12.0
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
     parser = add_command(commands, "replay", __doc__, run)
-    add_options(parser, "capture CAPTURE: a file of serve --capture", capture=Path)
+    add_options(parser, "capture CAPTURE: a capture that serve --capture wrote", capture=Path)
     add_output(parser)
     add_options(
         parser,

@@ -1,4 +1,4 @@
-"""Show what is understood of a score and what will be played, or write it.
+"""Show how a score is read and what will be played, or write it in another format.
 
   yehu-server score show tune.musicxml
   yehu-server score show tune.jianpu --json
@@ -48,12 +48,12 @@ def add_to(commands: Any) -> None:
     add_options(
         show,
         """
-        score FILE: a file of MusicXML, ABC or jianpu, a MIDI file or a capture
-        --song N: the N-th tune of a file of ABC, or song of a MIDI file (default: the first)
+        score SCORE: a score: MusicXML, ABC, jianpu, MIDI or a capture
+        --song N: the N-th tune of an ABC file, or song of a MIDI file (default: the first)
         --json: print one JSON object
-        --plot OUT.png: draw the part that is played as it will be bowed, in jianpu
+        --plot OUT.png: draw the part that plays, with its bowing, in jianpu
         --part NAME: the part to draw (default: the one that plays)
-        --export-midi OUT.mid: write what is played as a MIDI file, and say what that cannot hold
+        --export-midi OUT.mid: write a MIDI file of what is played, and list what MIDI cannot hold
         --overwrite: replace OUT.mid or OUT.png if it exists
         """,
         score=Path,
@@ -66,12 +66,13 @@ def add_to(commands: Any) -> None:
     add_options(
         write,
         """
-        score IN: a MIDI file, a capture, or a file of MusicXML, ABC or jianpu
+        score SCORE: a score: MIDI, a capture, MusicXML, ABC or jianpu
         -o --output OUT: the file to write: .musicxml or .xml; .jianpu or .txt
         --part NAME ...: write this part, by its name, the beginning of that, or its number; may be
             repeated (default: all)
-        --song N: the N-th song of a MIDI file, or tune of a file of ABC
-        --tempo TEMPO: quarter notes a minute of a capture (default: that which fits its notes)
+        --song N: the N-th song of a MIDI file, or tune of an ABC file
+        --tempo TEMPO: tempo of a capture, in quarter notes a minute (default: the one that fits its
+            notes)
         --overwrite: replace OUT if it exists
         """,
         score=Path,

@@ -36,20 +36,19 @@ def add_arguments(parser: Parser) -> None:
     add_options(
         parser.add_argument_group("audio"),
         """
-        --audio-device NAME: words of the output's name and host API (see yehu-server devices), a
-            host API alone, such as JACK, for its default output, or null for silence (default:
-            JACK's output where JACK runs, or the system's)
+        --audio-device NAME: an output by words of its name (see yehu-server devices), a host API
+            alone, such as JACK, for its default output, or null for silence (default: JACK's output
+            where JACK runs, else the system's)
         --rate HZ: sample rate (default: the device's)
-        --blocksize FRAMES: number of frames computed at a time; JACK keeps its own period (default:
-            128)
-        --latency low|high|SECONDS: latency requested from the device (default: low)
-        --channels N: number of channels, left and right in turn; 1 has the mean of both (default:
-            2, or as the device has)
-        --follow NAME: play what a voice sings into an audio input, named as the output is (default
-            name: the input of a JACK server where one runs, or the system's)
-        --follow-transpose SEMITONES: how far from the voice it is played (default: by octaves, so
-            that the first note is in the lower half)
-        --follow-correct SHARE: how far it is moved to the tuning, 0 to 1 (default: 0)
+        --blocksize FRAMES: frames in a block; JACK keeps its own period (default: 128)
+        --latency low|high|SECONDS: latency to request from the device (default: low)
+        --channels N: number of output channels, left and right in turn; 1: mono (default: 2, or as
+            many as the device has)
+        --follow NAME: follow a voice at an audio input, and play what it sings; NAME as of
+            --audio-device (default: JACK's input where JACK runs, else the system's)
+        --follow-transpose SEMITONES: transpose the voice (default: by octaves, so that the first
+            note is in the lower half of the range)
+        --follow-correct SHARE: pitch correction, 0 as sung to 1 in tune (default: 0)
         """,
         rate=_rate,
         blocksize={"type": whole_within(1, 8192, "is not within 1 to 8192 frames"), "default": 128},
@@ -62,9 +61,9 @@ def add_arguments(parser: Parser) -> None:
     add_options(
         parser.add_argument_group("MIDI"),
         """
-        --midi-in PATTERN ...: open inputs with these words in their name; may be repeated (default:
-            all but through ports)
-        --virtual-midi NAME: also create a virtual MIDI input of this name
+        --midi-in PATTERN ...: open only inputs with these words in their name; may be repeated
+            (default: all but MIDI Through)
+        --virtual-midi NAME: also create a virtual MIDI input with this name
         --midi-api: the MIDI system (default: the first available)
         """,
         midi_api={"choices": ("alsa", "jack", "core", "windows", "none")},
@@ -72,9 +71,9 @@ def add_arguments(parser: Parser) -> None:
     add_options(
         parser.add_argument_group("OSC"),
         f"""
-        --osc HOST:PORT: address to listen at, UDP and TCP (default: {format_address(*OSC_ADDRESS)};
-            this machine only)
-        --osc-allow CIDR ...: accept only senders of this network, such as 192.168.1.0/24; may be
+        --osc HOST:PORT: address to listen at, by UDP and TCP (default:
+            {format_address(*OSC_ADDRESS)}; this machine only)
+        --osc-allow CIDR ...: accept only senders in this network, such as 192.168.1.0/24; may be
             repeated
         """,
         osc={"default": format_address(*OSC_ADDRESS)},
@@ -85,8 +84,8 @@ def add_arguments(parser: Parser) -> None:
         --http HOST:PORT: address to listen at for OSCQuery, HTTP and WebSocket (default:
             {format_address(*HTTP_ADDRESS)}; this machine only), or none
         --no-http: no OSCQuery
-        --http-allow CIDR ...: answer only clients of this network; may be repeated
-        --announce: announce the server by zeroconf (default: if it listens beyond this machine)
+        --http-allow CIDR ...: answer only clients in this network; may be repeated
+        --announce: announce the server by zeroconf (default: if other machines can reach it)
         """,
         http={"default": format_address(*HTTP_ADDRESS)},
         no_http={"dest": "http", "action": "store_const", "const": "none"},
@@ -95,12 +94,12 @@ def add_arguments(parser: Parser) -> None:
     add_options(
         parser.add_argument_group("the page"),
         """
-        --panel-port N: port of the page, on the host of --http; 0: a free one (default: the port of
-            --http and 1, or a free one where that is taken; none with --no-http)
+        --panel-port N: port of the page, on the host of --http; 0: any free one (default: the port
+            of --http plus 1, or a free one where that is taken; none with --no-http)
         --no-panel: no page
         --open: open the page in the browser
-        --lan listen|play|own: offer the page to the local network, whose phones and computers may
-            then listen, play, or do all that this machine may, by a PIN (default: play)
+        --lan listen|play|own: offer the page to the local network, protected by a PIN: other
+            devices may listen, play, or do all that this machine may (own) (default: play)
         """,
         panel_port=port,
         lan={"nargs": "?", "const": PLAY, "choices": ROLES},
@@ -111,8 +110,8 @@ def add_arguments(parser: Parser) -> None:
         group,
         """
         --watch: reload the mapping when its file changes
-        --jitter-buffer MS: delay of incoming messages, so that they keep their rhythm (default:
-            what the device requests at once, and 1 ms)
+        --jitter-buffer MS: delay incoming messages by this time, so that they keep their rhythm
+            (default: the largest block that the device asks for, and 1 ms)
         """,
         jitter_buffer=number_within(0.0, 1000.0, "ms"),
     )
@@ -122,16 +121,16 @@ def add_arguments(parser: Parser) -> None:
         group,
         f"""
         --record OUT: record everything to a new WAV or FLAC file
-        --record-from start|first-note: whether --record begins at once (default), or with the first
-            sound
-        --capture FILE: write every event to a new file, for yehu-server replay
+        --record-from start|first-note: begin --record at once (start, the default) or with the
+            first sound
+        --capture FILE: write every event to a new file, for yehu-server replay to render
         --overwrite: let --record and --capture replace existing files
-        --recordings FOLDER: folder that {PREFIX}/record/start writes to (default: yehu-server in
-            your music folder)
+        --recordings FOLDER: folder for recordings begun by {PREFIX}/record/start (default:
+            yehu-server in your music folder)
         --duration SECONDS: end after this time (default: never)
         --log-level: lowest level to log (default: info)
         --verbose: log details; the same as --log-level debug
-        --json-log: log one JSON object a line
+        --json-log: log as JSON, one object a line
         """,
         record=target,
         record_from={"choices": ("start", FIRST_NOTE), "default": "start"},

@@ -30,10 +30,10 @@ def add_sound(group: Any) -> None:
         group,
         """
         --rate HZ: sample rate (default: 44100)
-        --tail SECONDS: time after the end, up to 600 (default: until 80 dB below full scale, at
-            most 5 s)
+        --tail SECONDS: sound to keep after the last note, up to 600 (default: until it is 80 dB
+            below full scale, at most 5 s)
         --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
-        --normalize: scale the result to a true peak of -1 dBFS, between the samples too
+        --normalize: scale the result to a true peak of -1 dBFS
         """,
         rate={"type": whole, "default": 44100},
         tail=number_within(0.0, 600.0, "s"),
@@ -46,9 +46,9 @@ def add_room(group: Any) -> None:
     add_options(
         group,
         """
-        --dry: no room, and a body that sounds alike to both sides (default: a small, quiet room)
-        --mono: write one channel, the mean of both
-        --room NAME: the room: a preset of rooms, such as hall, or a file
+        --dry: no room, and the same sound on both sides (default: a small, quiet room)
+        --mono: write one channel, the mean of left and right
+        --room NAME: the room: one of the presets of rooms, such as hall, or a file
         """,
     )
 
@@ -60,12 +60,13 @@ def add_stage(parser: Any) -> None:
     add_options(
         group,
         """
-        --ensemble FILE.toml: each MIDI channel but 10 a yehu of its own, up to 16; a file says who
-            plays what and sits where
-        --by: with --ensemble: whether each channel or each track is a part (default: channel)
-        --stems FOLDER: also write what each part, and the room, gives to the mix: 01-NAME.wav ...
+        --ensemble FILE.toml: give each MIDI channel but 10, or each part of a score, a yehu of its
+            own, up to 16; a file says who plays what and sits where
+        --by: with --ensemble: each channel or each track is a part (default: channel)
+        --stems FOLDER: also write a file for each part, and one for the room: 01-NAME.wav ...
             room.wav
-        --jobs N: number of cores for an ensemble or a folder (default: all); the sound is the same
+        --jobs N: number of cores to use for an ensemble or a folder (default: all); the sound is
+            the same
         """,
         ensemble={"nargs": "?", "type": _ensemble_file, "const": BY_MIDI},
         by={"choices": ("channel", "track"), "default": "channel"},

@@ -3,7 +3,7 @@
 The candidates are the tracker's pitch, simple ratios of it, and the first high peak of the
 normalised square difference function (NSDF) [McLeod]. Each is refined by that function, at as many
 periods as fit. The tracker is [SwiftF0], a small network whose weights come with its package;
-docs/follow.md compares it with others.
+docs/decisions/0026-the-tracker.md compares it with others.
 """
 
 from __future__ import annotations

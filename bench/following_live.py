@@ -145,7 +145,7 @@ def song(notes: int) -> tuple[Array, Array]:
 
 def sing(notes: int, answer: Any) -> None:
     """Sing, and answer with what was played meanwhile."""
-    import jack  # type: ignore[import-untyped]
+    import jack
 
     for silence in (jack.set_error_function, jack.set_info_function):
         silence(lambda _message: None)

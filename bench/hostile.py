@@ -24,7 +24,7 @@ from typing import Any
 
 import report
 from attacks import HOST, HOSTILE, KINDS
-from load import SPAWN, dummy_jack, midi_out
+from load import SPAWN, MidiOut, dummy_jack
 from rich.console import Console
 from rich.table import Table
 
@@ -175,8 +175,8 @@ class Playing:
 
     def _play_midi(self) -> None:
         for number in self._paced() if self._midi is not None else ():
-            self._midi.send_message([0x90, LOWEST + number % PITCHES, 90])
-            self._midi.send_message([0x80, LOWEST + (number - 1) % PITCHES, 0])
+            self._midi.send([0x90, LOWEST + number % PITCHES, 90])
+            self._midi.send([0x80, LOWEST + (number - 1) % PITCHES, 0])
             self.midi_notes = number + 1
 
     def _hear(self) -> None:
@@ -269,13 +269,13 @@ def main() -> None:
     figures = {}
     for name in arguments.kind or KINDS:
         with dummy_jack(PERIOD, RATE):
-            served, output = Served(has_midi=True), midi_out("player")
+            served, output = Served(has_midi=True), MidiOut("player")
             try:
                 time.sleep(FOUND_S)
                 got = figures[name] = asdict(measured(name, arguments.seconds, served, output))
             finally:
                 served.stop()
-                output.close_port()
+                output.close()
         table.add_row(name, *(f"{value:.1f}".removesuffix(".0") for value in got.values()))
     Console(width=150).print(table)
     report.save(arguments.save, figures, seconds=arguments.seconds)

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 import report
-from load import JACK, compute, dummy_jack, helper, midi_out, start
+from load import JACK, MidiOut, compute, dummy_jack, helper, start
 
 from yehu_server.core.engine.mailbox import MIDI_INPUTS, SMALL_RING
 from yehu_server.core.midi.packing import PORT_SHIFT, packed
@@ -48,7 +48,7 @@ class Listener:
     """A JACK client that finds the first sample after silence."""
 
     def __init__(self) -> None:
-        import jack  # type: ignore[import-untyped]
+        import jack
 
         for silence in (jack.set_error_function, jack.set_info_function):
             silence(lambda _message: None)
@@ -80,19 +80,19 @@ def measure(kind: str, port: int, trials: int, answer: Any) -> None:
     """Send and listen; answer with the latencies (ms) and the number of xruns."""
     osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     osc.connect(("127.0.0.1", port))
-    midi = midi_out("bench") if kind == "MIDI" else None
+    midi = MidiOut("bench") if kind == "MIDI" else None
     listener = Listener()
     time.sleep(2.0)  # until the port is found
 
     def volume(value: int) -> None:
         if midi is not None:
-            midi.send_message([0xB0, VOLUME, 127 * value])
+            midi.send([0xB0, VOLUME, 127 * value])
         else:
             osc.send(pack("/yehu/playing/volume", float(value)))
 
     chance = random.Random(3)  # noqa: S311
     if midi is not None:
-        midi.send_message([0x90, 69, 90])
+        midi.send([0x90, 69, 90])
     else:
         osc.send(pack("/yehu/note", 69.0, 90.0))
     time.sleep(0.3)

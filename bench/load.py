@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import ctypes.util
 import multiprocessing
@@ -16,7 +17,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from yehu_server.live.osc.packets import pack
@@ -70,16 +71,30 @@ def sound_card(wanted: str | None, period: int) -> contextlib.AbstractContextMan
 # ---------------------------------------------------------------- the load
 
 
-def midi_out(name: str) -> Any:
-    """A virtual MIDI output on the first MIDI system that works."""
-    import rtmidi
+class MidiOut:
+    """A MIDI output of JACK, of a client of its own."""
 
-    for api in rtmidi.get_compiled_api():
-        with contextlib.suppress(rtmidi.RtMidiError, SystemError, NotImplementedError):
-            midi = rtmidi.MidiOut(api, name=name)
-            midi.open_virtual_port("out")
-            return midi
-    sys.exit("there is no MIDI system")
+    def __init__(self, name: str) -> None:
+        import jack
+
+        self._client = jack.Client(name, no_start_server=True)
+        self._port = self._client.midi_outports.register("out")
+        self._waiting: collections.deque[bytes] = collections.deque()
+        self._client.set_process_callback(self._process)
+        self._client.activate()
+
+    def _process(self, _frames: int) -> None:
+        self._port.clear_buffer()
+        while self._waiting:
+            self._port.write_midi_event(0, self._waiting.popleft())
+
+    def send(self, message: Sequence[int]) -> None:
+        """Send a message in the next period."""
+        self._waiting.append(bytes(message))
+
+    def close(self) -> None:
+        """Close the client."""
+        self._client.close()
 
 
 def send_load(port: int, parts: int = 1) -> None:
@@ -89,19 +104,19 @@ def send_load(port: int, parts: int = 1) -> None:
     """
     osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     osc.connect(("127.0.0.1", port))
-    outs = [midi_out("load" if parts == 1 else f"load {part + 1}") for part in range(parts)]
+    outs = [MidiOut("load" if parts == 1 else f"load {part + 1}") for part in range(parts)]
     prefixes = [f"/yehu/part/{part + 1}" for part in range(parts)] if parts > 1 else ["/yehu"]
     chance = random.Random(1)  # noqa: S311
     notes, due = [65] * parts, time.monotonic()
     while True:
         for part, midi in enumerate(outs):
-            midi.send_message([0x80, notes[part], 64])
+            midi.send([0x80, notes[part], 64])
             notes[part] = chance.randrange(65, 90)
-            midi.send_message([0x90, notes[part], chance.randrange(20, 127)])
+            midi.send([0x90, notes[part], chance.randrange(20, 127)])
         for step in range(50):
             midi, prefix = outs[step % parts], prefixes[step % parts]
             for message in ([0xE0, chance.randrange(128)], [0xD0], [0xB0, 1]):
-                midi.send_message([*message, chance.randrange(128)])
+                midi.send([*message, chance.randrange(128)])
             with contextlib.suppress(ConnectionRefusedError):
                 for _ in range(5):
                     osc.send(pack(f"{prefix}/bow/position", chance.uniform(0.05, 0.2)))

@@ -2,7 +2,7 @@
 
     .venv/bin/python scripts/compile_all.py [PROCESSES]
 
-scripts/test runs it before tests, scripts/machine_code.py before a release.
+scripts/test runs it before tests, scripts/release as it makes the machine code of a wheel.
 """
 
 from __future__ import annotations

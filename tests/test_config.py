@@ -11,7 +11,7 @@ from yehu_server import cli
 from yehu_server.cli.config import MAX_VALUES, parse
 from yehu_server.cli.serve_options import options_of
 
-# MIDI systems of other machines, which RtMidi was not compiled for.
+# A MIDI system of other machines.
 ELSEWHERE = "core" if sys.platform != "darwin" else "windows"
 
 

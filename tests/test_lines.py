@@ -6,6 +6,7 @@ import argparse
 import io
 import json
 import logging
+import os
 import sys
 import threading
 from types import SimpleNamespace
@@ -110,6 +111,37 @@ def test_log_lines_are_bounded_and_steer_nothing(monkeypatch, is_json):
     assert r"\x1b[31mred" in said.replace("\\\\", "\\")
     assert "ValueError" in said
     assert len(said) < 5000
+
+
+def test_lines_of_a_journal_begin_with_their_level_and_those_of_other_files_do_not(
+    monkeypatch, tmp_path
+):
+    before = logging.getLogger().handlers[:]
+    for is_journal in (True, False):
+        with (tmp_path / "stderr").open("w+") as stderr:
+            at = os.fstat(stderr.fileno())
+            journal = f"{at.st_dev}:{at.st_ino + (not is_journal)}"
+            monkeypatch.setenv("JOURNAL_STREAM", journal)
+            monkeypatch.setattr(sys, "stderr", stderr)
+            try:
+                terminal.set_up_log(argparse.Namespace(json_log=False, log_level="info"))
+                log = logging.getLogger("yehu_server")
+                log.info("MIDI: keys is connected")
+                log.error("a defect", exc_info=ValueError("bad"))
+            finally:
+                logging.basicConfig(handlers=before, force=True)
+                log.setLevel(logging.NOTSET)
+            stderr.seek(0)
+            said = stderr.read().splitlines()
+        if is_journal:
+            assert said[0] == "<6>MIDI: keys is connected"
+            assert said[1] == "<3>a defect"
+            assert said[-1] == "<3>ValueError: bad"
+        else:
+            assert said[:2] == [
+                "yehu-server: MIDI: keys is connected",
+                "yehu-server: a defect",
+            ]
 
 
 def test_lines_of_one_cause_are_bounded_a_minute():

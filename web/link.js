@@ -13,16 +13,31 @@ const BASE = 128; // of numbers of many bytes
 const MOST = 24_000; // characters that browsers and letters pass on
 const MAX_BYTES = 4 << 20; // unpacked
 
+/** Names and addresses that only this machine has, or its network: RFC 1918, 3927, 4193, 6762. */
+const LOCAL =
+  /^(?:[^.:]*|.*\.(?:localhost|local|lan|internal)|(?:127|10|192\.168|169\.254|172\.(?:1[6-9]|2\d|3[01]))(?:\.\d+)+|\[(?:::1|f[cd].*|fe80.*)\])$/i;
+
 /**
- * The link that plays a performance on this page; null where it is too long for one.
+ * Whether anybody can open a page of this host.
+ * @param {string} host
+ */
+export const isPublic = (host) => !LOCAL.test(host);
+
+/** The page that links open: the one that this page was told of (`--share-url`), or itself. */
+export function sharedPage() {
+  const told = document.querySelector("meta[name=yehu-share]")?.getAttribute("content");
+  return told || location.origin + location.pathname + location.search;
+}
+
+/**
+ * The link that plays a performance; null where it is too long for one.
  * @param {Performance} performance
  */
 export async function linkOf(performance) {
   const packed = await through(new CompressionStream("deflate-raw"), pack(performance));
   const text = btoa(Array.from(packed, (byte) => String.fromCharCode(byte)).join(""));
   const safe = text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
-  const { origin, pathname, search } = location;
-  return safe.length > MOST ? null : origin + pathname + search + MARK + safe;
+  return safe.length > MOST ? null : sharedPage() + MARK + safe;
 }
 
 /**

@@ -17,16 +17,14 @@ venv=$root/.venv
 log=$venv/setup.log
 kinds=(run dev all) # each holds what those before it need
 
-# What we need from Debian: to play live, and to compile python-rtmidi, which has no wheels for
-# Python 3.13 and newer: for ALSA and, as its wheels are, for JACK.
+# What we need from Debian, to play live.
 debian_packages=(libportaudio2)
-debian_build_packages=(g++ libasound2-dev libjack-jackd2-dev pkg-config)
 # What only tests need: a JACK server, real OSC senders, a linker for WebAssembly, what runs it and
 # the page, and another reader of ABC.
 debian_test_packages=(jackd2 liblo-tools puredata-core lld npm chromium chromium-headless-shell
     abcmidi)
 
-# Python 3.12 and 3.11 first, since nothing has to be compiled for them. numba sets the newest.
+# Those first that the tests use most. numba sets the newest.
 python_candidates=(python3.12 python3.11 python3.13 python3.14 python3 python)
 python_probe='
 import sys
@@ -63,7 +61,6 @@ setup() {
         for each in "${kinds[@]}"; do
             is_set_up "$each" || rm -f "$venv/stamp-$each"
         done
-        build_packages "$python"
         if [ "$fresh" ]; then
             say "setting up .venv with Python $(python_version "$python"), once"
             empty_venv
@@ -159,10 +156,6 @@ install() (
     cd "$root" || exit
     bring_uv
     settings=$(settings_of_pip "$2")
-    if compiles "$venv/bin/python"; then # first the rest, which has the locked tools to do it
-        locked -v python-rtmidi "$lock" >"$venv/rest.lock"
-        install_packages --require-hashes -r "$venv/rest.lock"
-    fi
     install_packages --require-hashes --no-build-isolation -r "$lock"
     if ! is_set_up run; then # else it may be in use
         install_packages --no-deps --no-build-isolation --editable .
@@ -222,17 +215,9 @@ for line in sys.stdin:
 '
 }
 
-# Prints what a lock file has for one package; with -v for all others.
+# Prints what a lock file has for one package.
 locked() {
-    local wanted=1
-    if [ "$1" = -v ]; then wanted=0 && shift; fi
-    awk -v begin="$1==" -v wanted="$wanted" \
-        '/^[^ ]/ { is_it = index($0, begin) == 1 } is_it == wanted' "$2"
-}
-
-# Whether this Python has to compile python-rtmidi, for lack of a wheel.
-compiles() {
-    "$1" -I -c 'import sys; sys.exit(sys.version_info < (3, 13))'
+    awk -v begin="$1==" '/^[^ ]/ { is_it = index($0, begin) == 1 } is_it' "$2"
 }
 
 # Runs a command with its output in the log; shows the end of that and stops if it fails.
@@ -256,22 +241,6 @@ system_packages() {
         say "to play live: sudo apt-get install $*"
     else
         say "to play live, install what Debian calls $*"
-    fi
-}
-
-# The same for what compiling python-rtmidi takes, where it is needed; without it we stop.
-build_packages() {
-    compiles "$1" && [ "$(uname -s)" = Linux ] && command -v apt-get >/dev/null || return 0
-    # A Python of Debian's has its headers in a package of their own.
-    # shellcheck disable=SC2046
-    set -- $(missing "${debian_build_packages[@]}") $("$1" -I -c '
-import os, sys, sysconfig
-if not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")):
-    print("python%d.%d-dev" % sys.version_info[:2])
-')
-    if [ $# -gt 0 ] && ! apt_install "$@"; then
-        die "this Python has to compile python-rtmidi: sudo apt-get install $*" \
-            "(Python 3.12 and 3.11 need not)"
     fi
 }
 
@@ -307,7 +276,6 @@ is_there() {
             return 1
             ;;
         npm) command -v npm >/dev/null && command -v node >/dev/null ;;
-        libjack-jackd2-dev) pkg-config --exists jack 2>/dev/null ;; # also JACK 1's will do
         *) [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ;;
     esac
 }

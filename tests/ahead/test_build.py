@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from yehu_server.ahead import build as build_module
 from yehu_server.ahead import build_hash as hashing
 from yehu_server.ahead.build import build, page_linker
 from yehu_server.ahead.build_hash import build_hash
@@ -107,3 +108,16 @@ def test_an_image_begins_as_serve_does():
     assert (rig["midi"]["tables"], rig["midi"]["players"]) == (0, 1)
     assert rig["ring"][0]["kind"] == START
     assert rig["mail"]["posted"][SERVER, 0] == 1
+
+
+def test_zig_links_where_the_system_has_no_linker_and_without_it_both_are_named(monkeypatch):
+    monkeypatch.setattr(build_module, "find_spec", lambda _name: None)
+    monkeypatch.setattr(build_module.shutil, "which", lambda name: f"/usr/bin/{name}")
+    assert build_module.page_linker() == ["/usr/bin/wasm-ld"]
+    monkeypatch.setattr(build_module.shutil, "which", lambda _name: None)
+    for what, package in (("wasm", "lld"), ("library", "gcc")):
+        with pytest.raises(YehuError, match=f"Debian's package {package} has it, and so has zig: "):
+            build_module.linker_of(what)
+    monkeypatch.setattr(build_module, "find_spec", lambda _name: object())
+    assert build_module.linker_of("wasm")[-2:] == ["ziglang", "wasm-ld"]
+    assert build_module.linker_of("library")[-2:] == ["ziglang", "cc"]

@@ -15,7 +15,7 @@ import {
   words,
 } from "../elements.js";
 import { CaptureWriter, Replayer, fileOf, notesAndGestures, readCapture } from "../capture.js";
-import { linkOf, readLink } from "../link.js";
+import { isPublic, linkOf, readLink } from "../link.js";
 import { onLanguage, translate } from "../i18n.js";
 
 /**
@@ -145,9 +145,11 @@ function performances({ instrument, hands }) {
     offer.replaceChildren(makeButton(translate("keep.save"), save));
     word.textContent = link ? "" : translate("keep.long");
     if (!link) return;
+    const isForAll = isPublic(new URL(link).hostname);
+    if (!isForAll) word.textContent = translate("keep.local");
     const copy = async () => {
       await navigator.clipboard?.writeText(link).catch(() => {});
-      word.textContent = translate("keep.copied");
+      word.textContent = translate(isForAll ? "keep.copied" : "keep.local");
     };
     const label = translate("keep.link");
     offer.prepend(

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from yehu_server.errors import OutputError, YehuError
 from yehu_server.system.files import LIBRARY, linker_options
 from yehu_server.util import __version__
 from yehu_server.util.files import write_bytes
+from yehu_server.util.hints import install_command
 from yehu_server.util.processes import machine_lock, python_command
 
 log = logging.getLogger(__name__)
@@ -38,25 +40,31 @@ WHATS = ("wasm", "library")
 RATES = (44100.0, 48000.0)  # Hz
 PAGE_LINKERS = ("wasm-ld", *(f"wasm-ld-{version}" for version in range(22, 13, -1)))
 LIBRARY_LINKERS = ("cc", "gcc", "clang")
+HAVE_IT = f"Debian's package {{}} has it, and so has zig: {install_command('plugin')}"
 STACK_BYTES = 1 << 18
 
 
-def page_linker() -> str | None:
-    """The path of LLVM's linker for WebAssembly, where there is one."""
-    return _first(PAGE_LINKERS)
+def page_linker() -> list[str] | None:
+    """The command of LLVM's linker for WebAssembly, or of zig, which has it; None without them."""
+    return _first(PAGE_LINKERS, "wasm-ld")
 
 
-def linker_of(what: str) -> str:
-    """The path of the linker for ``wasm`` or a ``library``; raises YehuError if there is none."""
-    linker = page_linker() if what == "wasm" else _first(LIBRARY_LINKERS)
+def linker_of(what: str) -> list[str]:
+    """The command that links ``wasm`` or a ``library``; raises YehuError if there is none."""
+    linker = page_linker() if what == "wasm" else _first(LIBRARY_LINKERS, "cc")
     if linker is not None:
         return linker
     if what == "wasm":
-        raise YehuError("there is no wasm-ld here; Debian's package lld has it")
-    raise YehuError("there is no C compiler here, whose linker makes the library")
+        raise YehuError(f"there is no wasm-ld here; {HAVE_IT.format('lld')}")
+    raise YehuError(f"there is no C compiler here; {HAVE_IT.format('gcc')}")
 
 
-def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> None:
+def zig(tool: str) -> list[str] | None:
+    """The command of one of zig's tools, where its package is installed."""
+    return None if find_spec("ziglang") is None else [sys.executable, "-m", "ziglang", tool]
+
+
+def link_page(linker: Sequence[str], code: Path, exports: Iterable[str], into: Path) -> None:
     """Link an object file into a WebAssembly module with its own memory; raises YehuError."""
     options = [
         "--no-entry",
@@ -67,17 +75,18 @@ def link_page(linker: str, code: Path, exports: Iterable[str], into: Path) -> No
         f"stack-size={STACK_BYTES}",
         *(f"--export={name}" for name in exports),
     ]
-    run_compiler([linker, *options, str(code), "-o", str(into)])
+    run_compiler([*linker, *options, str(code), "-o", str(into)])
 
 
-def link_library(linker: str, code: Path, into: Path) -> None:
+def link_library(linker: Sequence[str], code: Path, into: Path) -> None:
     """Link an object file into a shared library; raises YehuError where it fails."""
     options = ["-shared", "-s", *linker_options(into.name)]
-    run_compiler([linker, *options, str(code), "-o", str(into)])
+    run_compiler([*linker, *options, str(code), "-o", str(into)])
 
 
-def _first(names: Iterable[str]) -> str | None:
-    return next((path for path in map(shutil.which, names) if path is not None), None)
+def _first(names: Iterable[str], of_zig: str) -> list[str] | None:
+    found = next((path for path in map(shutil.which, names) if path is not None), None)
+    return zig(of_zig) if found is None else [found]
 
 
 def run_compiler(command: Sequence[str]) -> None:
@@ -163,7 +172,9 @@ def page_module() -> Path:
     if found := _found(folder):
         return found
     if page_linker() is None:
-        raise YehuError("nothing is built for pages, and there is no wasm-ld; Debian's lld has it")
+        raise YehuError(
+            f"nothing is built for pages, and there is no wasm-ld; {HAVE_IT.format('lld')}"
+        )
     with machine_lock(data_folder(), "page"):  # who waits finds it then
         if found := _found(folder):
             return found

@@ -19,7 +19,8 @@ def build_hash() -> str:
         for name in ("calibrations.json", "practices.json")
     ]
     begun = [PACKAGE / "playing" / name for name in ("options.py", "tables.py")]  # memory's start
-    return key_of([*sorted(Path(__file__).parent.glob("*.py")), *begun], source_hash(), *learnt)
+    sources = [*sorted(Path(__file__).parent.glob("*.py")), *begun]
+    return key_of(sources, source_hash(is_shipped=True), *learnt)
 
 
 NAME = b"yehu"

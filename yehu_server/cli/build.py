@@ -1,6 +1,7 @@
 """Compile the instrument ahead of time, so that it plays without Python.
 
-It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compiler.
+It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compiler; zig has both, for
+where the system has none (pip install ziglang).
 
   yehu-server build wasm -o page
   yehu-server build library -o lib --rate 48000 96000 --level x86-64-v3
@@ -32,7 +33,10 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "what",
         choices=("wasm", "library"),
-        help="wasm: a WebAssembly module, for pages; library: a shared library and its header",
+        metavar="{wasm,library,plugin,tables}",
+        help="wasm: a WebAssembly module, for pages; library: a shared library and its header; "
+        "plugin: a plug-in for music programs; tables: a mapping, a tuning and presets as numbers "
+        "(the last two have options of their own: build plugin --help)",
     )
     add_folder(parser)
     add_options(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import urllib.parse
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,6 +16,14 @@ def target(text: str) -> Path:
             "nothing is written to standard output; name a file (./- for one of that name)"
         )
     return Path(text)
+
+
+def web_address(text: str) -> str:
+    """The address of a page: ``https://host/path``; without a query or a fragment."""
+    parts = urllib.parse.urlsplit(text)
+    if parts.scheme not in {"http", "https"} or not parts.hostname or parts.query or parts.fragment:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected one such as https://host/yehu/")
+    return text
 
 
 def whole(text: str) -> int:

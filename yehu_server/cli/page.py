@@ -4,6 +4,7 @@ The written page is static files, for any web server.
 
   yehu-server page --open
   yehu-server page -o public/yehu
+  yehu-server page --open --share-url https://example.org/yehu/
 
 docs/page.md describes what the page does.
 """
@@ -19,7 +20,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from yehu_server.cli.arguments import add_command, add_folder, add_options
-from yehu_server.cli.converters import port
+from yehu_server.cli.converters import port, web_address
 from yehu_server.cli.terminal import print_result
 
 # White and black of the 256 colours, which themes leave alone; and back.
@@ -59,8 +60,11 @@ def add_to(commands: Any) -> None:
         f"""
         --port N: port to show it at; 0: a free one (default: {PORT})
         --open: open it in the browser
+        --share-url URL: the address of the same page for everybody, which links to performances
+            name; without it they name the page where they were made
         """,
         port={"type": port, "default": PORT},
+        share_url={"type": web_address, "default": ""},
     )
 
 
@@ -69,11 +73,11 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.live.page.site import write_page
 
     if arguments.output is not None:
-        written = write_page(arguments.output)
+        written = write_page(arguments.output, arguments.share_url)
         print_result(f"{arguments.output}: {len(written)} files; index.html is the page")
         return 0
     with tempfile.TemporaryDirectory(prefix="yehu-page-") as folder:
-        write_page(Path(folder))
+        write_page(Path(folder), arguments.share_url)
         _show(Path(folder), arguments.port, arguments.open)
     return 0
 

@@ -13,7 +13,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 from yehu_server.errors import YehuError, one_line
 
@@ -169,7 +169,8 @@ def set_up_log(arguments: argparse.Namespace) -> None:
     """Set up logging by --log-level and --json-log, and set `quiet` for warnings only or JSON."""
     handler = _Handler()
     handler.addFilter(_RepeatFilter().filter)
-    handler.setFormatter(_JsonFormatter() if arguments.json_log else _PlainFormatter())
+    plain = _JournalFormatter() if _is_journal() else _PlainFormatter()
+    handler.setFormatter(_JsonFormatter() if arguments.json_log else plain)
     logging.basicConfig(handlers=[handler], level=logging.WARNING, force=True)
     logging.getLogger("yehu_server").setLevel(arguments.log_level.upper())
     arguments.quiet = arguments.json_log or arguments.log_level in ("warning", "error")
@@ -217,6 +218,27 @@ class _PlainFormatter(logging.Formatter):
 
     def formatException(self, ei: Any) -> str:  # noqa: N802 - logging's name
         return "\n".join(map(one_line, super().formatException(ei).split("\n")))
+
+
+def _is_journal() -> bool:
+    """Whether stderr goes to systemd's journal, as its variable says [systemd.exec(5)]."""
+    with contextlib.suppress(OSError, ValueError):
+        of_stderr = os.fstat(sys.stderr.fileno())
+        return os.environ.get("JOURNAL_STREAM") == f"{of_stderr.st_dev}:{of_stderr.st_ino}"
+    return False
+
+
+class _JournalFormatter(_PlainFormatter):
+    """Lines that begin with their level [sd-daemon(3)]; the journal adds name and time."""
+
+    LEVELS: ClassVar = {"DEBUG": 7, "INFO": 6, "WARNING": 4, "ERROR": 3, "CRITICAL": 2}
+
+    def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802 - logging's name
+        return one_line(record.message)
+
+    def format(self, record: logging.LogRecord) -> str:
+        level = self.LEVELS[record.levelname]
+        return "\n".join(f"<{level}>{line}" for line in super().format(record).split("\n"))
 
 
 class _JsonFormatter(logging.Formatter):

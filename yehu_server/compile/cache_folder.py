@@ -36,16 +36,17 @@ def register(package: str, folder: Path) -> None:
 
 
 @cache
-def source_hash(package: str = "") -> str:
+def source_hash(package: str = "", *, is_shipped: bool = False) -> str:
     """Key of all source that compiled code comes from or reads constants of (16 hex digits).
 
     `package`: another one's name, for the key of its source and ours.
+    `is_shipped`: of what a release brings, which is loaded without numba: with any version of it.
     """
     folders = [PACKAGE / folder for folder in SOURCE_FOLDERS]
     if package in others:
         folders.append(others[package])
     sources = [source for folder in folders for source in sorted(folder.rglob("*.py"))]
-    return key_of(sources, version("numba"))
+    return key_of(sources, "" if is_shipped else version("numba"))
 
 
 def key_beside(module: str) -> str:

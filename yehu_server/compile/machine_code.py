@@ -105,7 +105,8 @@ def loaded(folder: Path, sources: str, what: str = PLAYING) -> dict[str, int]:
 
     It is empty where they have to be compiled. `sources`: key of the source they were made from.
     """
-    for place in (folder, SHIPPED) if cache_folder.IS_TRUSTED else (SHIPPED,):
+    kept = [(folder, sources)] if cache_folder.IS_TRUSTED else []
+    for place, key in (*kept, (SHIPPED, cache_folder.source_hash(what, is_shipped=True))):
         path = file_in(place, what)
         try:
             payload = read_checksummed(path)
@@ -113,7 +114,7 @@ def loaded(folder: Path, sources: str, what: str = PLAYING) -> dict[str, int]:
                 continue
             head, _, body = payload.partition(b"\n")
             about = json.loads(head)
-            if about["format"] == FORMAT and about["made for"] == made_for(sources):
+            if about["format"] == FORMAT and about["made for"] == made_for(key):
                 return _load(about["functions"], zlib.decompress(body))
         except (ChecksumError, ValueError, LookupError, TypeError, zlib.error) as error:
             log.warning("%s: %s; compiling anew", path, error)
@@ -137,9 +138,10 @@ def _load(functions: list[list[Any]], code: bytes) -> dict[str, int]:
         binding.add_symbol(name, abort)
     found, begin = {}, 0
     for name, symbol, size in functions:
-        data = code[begin : begin + size]
-        engine.add_object_file(binding.object_file.ObjectFileRef.from_data(data))
-        engine.finalize_object()
+        if size:  # or it is in the object before it
+            data = code[begin : begin + size]
+            engine.add_object_file(binding.object_file.ObjectFileRef.from_data(data))
+            engine.finalize_object()
         found[name] = engine.get_function_address(symbol)
         if found[name] == 0:
             raise ValueError(f"has no {symbol}")

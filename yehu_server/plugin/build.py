@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import shutil
-import sys
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 
-from yehu_server.ahead.build import run_compiler
+from yehu_server.ahead.build import HAVE_IT, run_compiler, zig
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.plugin.bundles import put_clap, put_lv2, put_vst3
 from yehu_server.plugin.carried import carried
@@ -68,16 +66,9 @@ def build(folder: Path, target: str) -> list[Path]:
     `target`: one of `targets.NAMES`, or `targets.ALL`.
     """
     names = [name for name in NAMES if target in (name, ALL)]
-    if any(system.window == X11 for system in systems_of(target)) and not (SYSTEM / XCB).is_file():
-        raise YehuError(
-            "there are no headers of X's windows here; Debian's package libxcb1-dev has them"
-        )
+    check_headers(target)
     for system in systems_of(target):
         compiler_of(system)  # or there would be none after a minute of compiling
-    for each in FORMATS:
-        if not (each.headers / each.sign).is_file():
-            wanted = f"Debian's package {each.package} has them"
-            raise YehuError(f"there are no headers of {each.name} here; {wanted}")
     try:
         with tempfile.TemporaryDirectory() as scratch:
             work = Path(scratch)
@@ -95,6 +86,20 @@ def build(folder: Path, target: str) -> list[Path]:
             ]
     except OSError as error:
         raise OutputError(f"{error.filename or folder}: {error.strerror}") from error
+
+
+def check_headers(target: str) -> None:
+    """Raise YehuError, with the packages that have them, where headers of any kind are missing."""
+    signs = {each.headers / each.sign: (each.name, each.package) for each in FORMATS}
+    if any(system.window == X11 for system in systems_of(target)):
+        signs[SYSTEM / XCB] = ("X's windows", "libxcb1-dev")
+    missing = [found for sign, found in signs.items() if not sign.is_file()]
+    if missing:
+        names = ", ".join(name for name, _ in missing)
+        packages = " ".join(dict.fromkeys(package for _, package in missing))
+        raise YehuError(
+            f"there are no headers of {names} here; on Debian: apt-get install {packages}"
+        )
 
 
 def write_header(work: Path) -> None:
@@ -116,10 +121,10 @@ def compiler_of(system: System) -> list[str]:
     """The command that compiles and links C++ for a system; raises YehuError if there is none."""
     if system.is_here and (found := shutil.which("g++")):
         return [found]
-    if find_spec("ziglang") is not None:
-        return [sys.executable, "-m", "ziglang", "c++", "-target", system.zig]
+    if (command := zig("c++")) is not None:
+        return [*command, "-target", system.zig]
     if system.is_here:
-        raise YehuError("there is no C++ compiler here; Debian's package g++ has it")
+        raise YehuError(f"there is no C++ compiler here; {HAVE_IT.format('g++')}")
     raise YehuError(f"building for {system.name} needs zig: {install_command('plugin')}")
 
 

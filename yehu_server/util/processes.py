@@ -1,6 +1,6 @@
 """Start helper processes, exchange messages with them, and restart them; a lock for all of them.
 
-PortAudio and RtMidi may hang or crash when the sound server under them dies. Each runs in a
+PortAudio and a MIDI library may hang or crash when the sound server under them dies. Each runs in a
 process of its own and exchanges lines of JSON: orders in, events out. The process ends when its
 input does, so none outlives its parent.
 """

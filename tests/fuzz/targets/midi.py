@@ -25,16 +25,6 @@ def with_each_mapping() -> list[PlayingOptions]:
     return [PlayingOptions(mapping=load(name), programs=True) for name in shipped_mappings()]
 
 
-class MidiIn:
-    """Stands in for RtMidi."""
-
-    def ignore_types(self, **_kinds: bool) -> None:
-        pass
-
-    def set_callback(self, callback) -> None:
-        self.receive = callback
-
-
 @target("midi-messages", words=(b"\x33\x90\x43\x5a", b"\x33\xb0\x01\x7f", b"\x32\xd0\x40"))
 def midi_messages(data: bytes) -> None:
     """Any messages give the instrument finite values within range, and it can be silenced.
@@ -53,10 +43,9 @@ def midi_messages(data: bytes) -> None:
 
     router = Router([], 1)
     feed = MidiFeed([SimpleNamespace(post=post)], router, message=MESSAGE, disconnect=DISCONNECT)
-    midi_ins = [MidiIn() for _ in range(PORTS)]
-    for number, midi_in in enumerate(midi_ins):
-        feed.open(f"port {number}")
-        Input(midi_in, f"port {number}", None, feed, None)
+    inputs = [Input(f"port {number}", None, feed, None) for number in range(PORTS)]
+    for each in inputs:
+        feed.open(each.name)
     for _ in range(MAX_MESSAGES):
         if not program:
             break
@@ -64,7 +53,7 @@ def midi_messages(data: bytes) -> None:
         message = program.take(1 + head % 4)
         instrument.now_s += 1e-3 * (head >> 4)
         if message:
-            midi_ins[head // 4 % PORTS].receive((list(message), 0.0))
+            inputs[head // 4 % PORTS].receive(list(message))
     check_values(player)
     player.panic(frame=player.frame_of())
     check_silence(player, instrument)

@@ -16,16 +16,6 @@ from yehu_server.system import clocks
 MS = 1_000_000
 
 
-class Port:
-    """An RtMidi input."""
-
-    def ignore_types(self, **_types: bool) -> None:
-        pass
-
-    def set_callback(self, callback) -> None:
-        self.receive = callback
-
-
 class Controller:
     """One open port, a manual clock, and the events reported."""
 
@@ -38,9 +28,8 @@ class Controller:
         feed = MidiFeed([ring], Router([], 1), message=MESSAGE, disconnect=DISCONNECT)
         order = {"patterns": [], "others": True, "virtual": None, "api": None}
         self.inputs = Inputs(self, feed, order)
-        self.port = Port()
         feed.open("keystep")
-        self.inputs._open["keystep"] = Input(self.port, "keystep", None, feed, self)
+        self.port = self.inputs._open["keystep"] = Input("keystep", None, feed, self)
 
     def post(self, time_ns: int, kind: int, index: int) -> bool:
         assert time_ns == self.now_ns
@@ -60,13 +49,13 @@ class Controller:
 @pytest.fixture
 def controller(monkeypatch) -> Controller:
     controller = Controller(monkeypatch)
-    controller.port.receive(([ACTIVE_SENSING], 0.0))
+    controller.port.receive([ACTIVE_SENSING])
     return controller
 
 
 def test_a_controller_that_falls_silent_is_reported_once(controller):
     controller.sense_for(200)
-    controller.port.receive(([ACTIVE_SENSING], 0.0))
+    controller.port.receive([ACTIVE_SENSING])
     controller.sense_for(300)
     assert controller.posted == []
     controller.sense_for(1000)
@@ -81,17 +70,17 @@ def test_while_we_sleep_notes_end_once_as_their_ends_may_be_lost_but_nobody_fall
     controller.now_ns += round(1e9 * slept_s)
     controller.sense_for(300)
     assert controller.posted == ["disconnect", "slept"]
-    controller.port.receive(([ACTIVE_SENSING], 0.0))
+    controller.port.receive([ACTIVE_SENSING])
     controller.sense_for(300)
     assert controller.posted == ["disconnect", "slept"]
 
 
 def test_opening_a_port_is_no_sleep(controller):
-    def get_ports() -> list[str]:
+    def ports() -> list[str]:
         controller.now_ns += 1000 * MS
         return ["keystep"]
 
-    controller.inputs._finder = SimpleNamespace(get_ports=get_ports)
+    controller.inputs._system = SimpleNamespace(ports=ports, left=set)
     for _ in range(3):
         controller.sense_for(100)
         controller.inputs.poll()
@@ -100,5 +89,5 @@ def test_opening_a_port_is_no_sleep(controller):
 
 def test_clocks_and_system_exclusive_are_not_passed_on(controller):
     for data in ([0xF8], [0xF9], [0xF0, 0x7E, 9, 1, 0xF7]):
-        controller.port.receive((data, 0.0))
+        controller.port.receive(data)
     assert controller.posted == []

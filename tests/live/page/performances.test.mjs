@@ -10,12 +10,13 @@ import { pathToFileURL } from "node:url";
 import { resolve } from "node:path";
 import { deflateRawSync, inflateRawSync } from "node:zlib";
 
+globalThis.document = { querySelector: () => null };
 globalThis.location = { origin: "http://a", pathname: "/", search: "" };
 globalThis.AudioWorkletNode ??= class {};
 const web = pathToFileURL(`${resolve(process.env.WEB ?? "web")}/`);
 const { default: facts } = await import(new URL("facts.js", web).href);
 const { checked, notesAndGestures, readCapture } = await import(new URL("capture.js", web).href);
-const { linkOf, readLink } = await import(new URL("link.js", web).href);
+const { isPublic, linkOf, readLink } = await import(new URL("link.js", web).href);
 
 const { RAMP, WRITE, HOLD, BEGIN, EXPRESS, END, RELEASE, STOP } = facts.kinds;
 const RATE = 1000;
@@ -115,4 +116,21 @@ test("as much as nobody plays is refused", async () => {
   assert.throws(() => checked(performance([{ ...notes(1, 0)[0], frame: 1e12 }])));
   checked(performance(notes(6000, 1)));
   await refuses(() => readCapture(new Blob(["{}"])), "a file");
+});
+
+test("a link names the page that all can open, where the page was told of it", async () => {
+  const told = "https://example.org/yehu/";
+  globalThis.document.querySelector = () => ({ getAttribute: () => told });
+  assert.ok((await linkOf(performance(notes(2, 100)))).startsWith(`${told}#play=`));
+  globalThis.document.querySelector = () => null;
+  assert.ok((await linkOf(performance(notes(2, 100)))).startsWith("http://a/#play="));
+});
+
+test("pages of this machine or its network are not for all", () => {
+  const ours = ["127.0.0.1", "localhost", "[::1]", "192.168.0.7", "10.1.2.3", "172.20.0.1"];
+  for (const host of [...ours, "studio.local", "studio", "[fd00::1]", "169.254.1.1"])
+    assert.equal(isPublic(host), false, host);
+  const others = ["example.org", "10.example.org", "172.32.0.1", "8.8.8.8"];
+  for (const host of [...others, "[2001:db8::1]", "local.example.org"])
+    assert.equal(isPublic(host), true, host);
 });

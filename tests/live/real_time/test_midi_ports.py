@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 
 import pytest
-import rtmidi
 from moves import Moves
 
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
+from yehu_server.errors import DeviceError
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed
@@ -26,24 +26,31 @@ from yehu_server.params.table import FINGERS
 from yehu_server.playing.options import PlayingOptions
 
 RATE, PERIOD = 48000, 1024
-LISTENS_AFTER_S = 0.2  # see test_a_port_is_listened_to_before_it_is_open
+LISTENS_AFTER_S = 0.2  # JACK reports a connection before it passes messages on
 SOON_S = 60.0  # ports are polled every half a second
 
 # Orders on stdin: "open CLIENT PORT", "close CLIENT", "send CLIENT HEX ...".
 SENDER = """
-import os, sys, rtmidi
-ports = {}
+import collections, os, sys, jack
+clients = {}
+class Sender:
+    def __init__(self, name, port):
+        self.client = jack.Client(name, no_start_server=True)
+        self.port, self.waiting = self.client.midi_outports.register(port), collections.deque()
+        self.client.set_process_callback(self.process)
+        self.client.activate()
+    def process(self, frames):
+        self.port.clear_buffer()
+        while self.waiting:
+            self.port.write_midi_event(0, self.waiting.popleft())
 for line in sys.stdin:
-    order, client, *words = line.split()
+    order, name, *words = line.split()
     if order == "open":
-        ports[client] = rtmidi.MidiOut(rtmidi.API_UNIX_JACK, name=client)
-        ports[client].open_virtual_port(" ".join(words))
+        clients[name] = Sender(name, " ".join(words))
     elif order == "close":
-        port = ports.pop(client)
-        port.close_port()
-        port.delete()
+        clients.pop(name).client.close()
     else:
-        ports[client].send_message(list(bytes.fromhex("".join(words))))
+        clients[name].waiting.append(bytes.fromhex("".join(words)))
     print("done", flush=True)
 os._exit(0)
 """
@@ -297,16 +304,18 @@ def feed() -> MidiFeed:
 
 
 class Studio:
-    """A MIDI system with a keyboard and a synthesizer, and a port of it; all done and reported."""
+    """A MIDI system with a keyboard and a synthesizer; what is done and reported."""
+
+    name = "studio"
 
     def __init__(self) -> None:
-        self.ports = ["keys", "synth"]
+        self.there = ["keys", "synth"]
         self.done: list[tuple[object, ...]] = []
         self.is_owned = False  # by another program
 
     def inputs(self, *patterns: str) -> Inputs:
         inputs = Inputs(self, feed(), {"patterns": patterns, "virtual": None, "api": None})
-        inputs._finder, inputs._client = self, lambda: self
+        inputs._system = self
         return inputs
 
     def reported(self) -> list[tuple[object, ...]]:
@@ -314,46 +323,37 @@ class Studio:
         reported, self.done = [each for each in self.done if len(each) > 1], []
         return reported
 
-    def get_ports(self) -> list[str]:
-        return self.ports
+    def ports(self) -> list[str]:
+        return self.there
 
-    def ignore_types(self, **_types: bool) -> None:
-        pass
+    def left(self) -> set[str]:
+        return set()
 
-    def set_callback(self, _callback: Callable) -> None:
-        self.done.append(("listens",))
-
-    def open_port(self, _number: int, name: str) -> None:
+    def open(self, full_name: str, _name: str, _receive: Callable) -> Callable[[], None]:
         if self.is_owned:
-            raise rtmidi.SystemError(name)
+            raise DeviceError(full_name)
         self.done.append(("opens",))
-
-    def cancel_callback(self) -> None:
-        pass
-
-    close_port = cancel_callback
+        return lambda: None
 
     def send(self, event: str, **details: object) -> None:
         self.done.append((event, details))
 
 
-def test_a_port_is_listened_to_before_it_is_open_and_tried_again_where_it_cannot_be_opened(
-    monkeypatch,
-):
+def test_a_port_is_tried_again_where_it_cannot_be_opened(monkeypatch):
     studio = Studio()
     studio.inputs("key").poll()
-    assert [step for step, *_ in studio.done] == ["listens", "opens", "appeared"]
+    assert [step for step, *_ in studio.done] == ["opens", "appeared"]
     studio.done, studio.is_owned = [], True
     inputs = studio.inputs("key")
     for _ in range(5):
         inputs.poll()
-    assert [step for step, *_ in studio.done] == ["listens", "refused"]  # once, for some seconds
+    assert [step for step, *_ in studio.done] == ["refused"]  # once, for some seconds
     monkeypatch.setattr(input_process, "AGAIN_S", 0.0)
     inputs.poll()
-    assert [step for step, *_ in studio.done] == ["listens", "refused", "listens"]  # unreported
+    assert [step for step, *_ in studio.done] == ["refused"]  # unreported
     studio.is_owned = False
     inputs.poll()
-    assert [step for step, *_ in studio.done[3:]] == ["listens", "opens", "appeared"]
+    assert [step for step, *_ in studio.done[1:]] == ["opens", "appeared"]
     studio.done, studio.is_owned = [], True
     inputs.poll()
     assert studio.done == []
@@ -366,10 +366,10 @@ def test_a_name_that_no_port_has_is_reported_once_and_heard_when_it_comes():
         inputs.poll()
     missing = {"pattern": "breath", "present": ["keys", "synth"]}
     assert studio.reported() == [("appeared", {"port": "keys", "number": 0}), ("missing", missing)]
-    studio.ports = ["keys", "breath"]
+    studio.there = ["keys", "breath"]
     inputs.poll()
     assert studio.reported() == [("appeared", {"port": "breath", "number": 1})]
-    studio.ports = ["keys"]
+    studio.there = ["keys"]
     inputs.poll()
     assert studio.reported() == [("vanished", {"port": "breath"})]
     said = []

@@ -1,8 +1,8 @@
 """The process that holds the MIDI inputs: ``python -m yehu_server.live.midi.input_process``.
 
-It opens the wanted inputs as they appear, stamps each message on arrival, and puts it where the
-audio callback takes it (``feed``). RtMidi over JACK crashes when the JACK server dies: then
-this process ends, and a new one takes its place.
+It opens the wanted inputs as they appear (``systems``), stamps each message on arrival, and puts it
+where the audio callback takes it (``feed``). When a JACK server dies, this process ends, and a new
+one takes its place.
 """
 
 from __future__ import annotations
@@ -11,14 +11,13 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
 
 from yehu_server.core.midi.packing import MAX_BYTES
-from yehu_server.errors import ParameterError
+from yehu_server.errors import DeviceError
 from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
-from yehu_server.live.midi.jack_watch import JackWatch
 from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted
+from yehu_server.live.midi.systems import MidiSystem, open_system
 from yehu_server.system import clocks
 from yehu_server.system.memory import open_shared
 from yehu_server.util.processes import SWITCH_INTERVAL_S, Message, Parent
@@ -29,10 +28,7 @@ AGAIN_S = 5.0  # until a port is tried again that could not be opened: another p
 SENSE_EVERY_S = 0.05
 SENSE_WITHIN_S = 0.33  # active sensing promises a message every 300 ms
 SLEPT_S = 0.25  # a longer pause between two checks: this process was stopped
-CLIENT = "yehu-server MIDI"
 ACTIVE_SENSING, CLOCKS = 0xFE, {0xF8, 0xF9}
-
-APIS = {"alsa": "LINUX_ALSA", "jack": "UNIX_JACK", "core": "MACOSX_CORE", "windows": "WINDOWS_MM"}
 
 
 class Input:
@@ -41,23 +37,19 @@ class Input:
     `is_forwarded`: whether each message is sent to the parent, too.
     """
 
-    def __init__(
-        self, midi: Any, name: str, full_name: str | None, feed: MidiFeed, parent: Parent
-    ) -> None:
-        self.midi = midi
+    def __init__(self, name: str, full_name: str | None, feed: MidiFeed, parent: Parent) -> None:
         self.name = name
         self.full_name = full_name
         self.is_forwarded = False
+        self.close: Callable[[], None] = lambda: None
         self._feed = feed
         self._parent = parent
         self.heard_s = 0.0  # of the last message, or of a stop of this process
         self._senses = False
-        midi.ignore_types(sysex=True, timing=True, active_sense=False)
-        midi.set_callback(self._receive)
 
-    def _receive(self, event: tuple[Sequence[int], float], _data: Any = None) -> None:
+    def receive(self, data: Sequence[int]) -> None:
+        """Play a message of the port."""
         at = clocks.monotonic_ns()
-        data = event[0]
         self.heard_s = 1e-9 * at
         if data[0] == ACTIVE_SENSING:
             self._senses = True
@@ -72,11 +64,6 @@ class Input:
             self._senses = False
             self._feed.end_port_notes(self.name, clocks.monotonic_ns(), is_gone=False)
             self._parent.send("silent", port=self.name)
-
-    def close(self) -> None:
-        """Close the port."""
-        self.midi.cancel_callback()
-        self.midi.close_port()
 
 
 class Inputs:
@@ -93,28 +80,28 @@ class Inputs:
         self._api = order["api"]
         self._open: dict[str, Input] = {}
         self._names = StableNames()
-        self._finder: Any = None  # the client that lists port names
+        self._system: MidiSystem | None = None
         self._problem = ""
         self._refused: dict[str, float] = {}  # when ports could not be opened, s
         self._sought: set[str] = set(self._patterns)  # those that no port has matched yet
-        self._watch: JackWatch | None = None
         self._awake_s = time.monotonic()
 
     @property
     def has_system(self) -> bool:
         """Whether there is a MIDI system."""
-        return self._finder is not None
+        return self._system is not None
 
     def poll(self) -> None:
         """Open ports that appeared, close those that disappeared."""
-        if self._finder is None and not self._start():
+        if self._system is None:
+            self._system = self._start()
+        if self._system is None:
             return
-        names = self._finder.get_ports()
+        names = self._system.ports()
         stable = dict(zip(self._names.of(names), names, strict=True))
         gone = set(self._open) - set(stable) - {self._virtual}
-        if self._watch is not None:  # ports that went and are back under the same name
-            left = self._watch.left()
-            gone |= {name for name, port in self._open.items() if port.full_name in left}
+        left = self._system.left()  # some may be back under the same name
+        gone |= {name for name, port in self._open.items() if port.full_name in left}
         for name in gone:
             self._open.pop(name).close()
             self._feed.end_port_notes(name, clocks.monotonic_ns(), is_gone=True)
@@ -126,7 +113,7 @@ class Inputs:
             is_named = bool(self._patterns) and is_wanted(name, self._patterns)
             wanted = is_named or (self._others and is_wanted(name, ()))
             if name not in self._open and is_due and wanted:
-                self._add(name, full_name)
+                self._add(self._system, name, full_name)
         self._report_missing(stable)
         self._measure_pause()  # opening a port takes long, while others are heard
 
@@ -162,37 +149,29 @@ class Inputs:
         for port in list(self._open.values()):
             port.is_forwarded = on
 
-    def _start(self) -> bool:
-        finder, problem = open_client(self._api)
-        if finder is None:
-            if problem != self._problem:
-                self._problem = problem
-                self._parent.send("none", reason=problem)
-            return False
-        self._finder = finder
-        self._api = finder.get_current_api()
-        if self._api == _number("jack"):
-            self._watch = JackWatch(f"{CLIENT} watch")
-        self._parent.send("system", api=api_name(self._api))
+    def _start(self) -> MidiSystem | None:
+        try:
+            system = open_system(self._api)
+        except DeviceError as error:
+            if str(error) != self._problem:
+                self._problem = str(error)
+                self._parent.send("none", reason=self._problem)
+            return None
+        self._parent.send("system", api=system.name)
         if self._virtual is not None:
-            self._add(self._virtual, None)
-        return True
+            self._add(system, self._virtual, None)
+        return system
 
-    def _add(self, name: str, full_name: str | None) -> None:
+    def _add(self, system: MidiSystem, name: str, full_name: str | None) -> None:
         """Open a port, or (without a full name) a virtual one."""
-        import rtmidi
-
         number = self._feed.open(name)
         if number is None:
             self._refuse(name, f"{PORTS} are open, which is the most")
             return
+        port = Input(name, full_name, self._feed, self._parent)
         try:
-            port = Input(self._client(), name, full_name, self._feed, self._parent)
-            if full_name is None:
-                port.midi.open_virtual_port(name)
-            else:
-                port.midi.open_port(port.midi.get_ports().index(full_name), name=name[:32])
-        except (rtmidi.RtMidiError, SystemError, ValueError, NotImplementedError) as error:
+            port.close = system.open(full_name, name, port.receive)
+        except DeviceError as error:
             self._feed.end_port_notes(name, clocks.monotonic_ns(), is_gone=True)
             self._refuse(name, str(error))
             return
@@ -207,58 +186,14 @@ class Inputs:
             self._parent.send("refused", port=name, reason=reason)
         self._refused[name] = time.monotonic()
 
-    def _client(self) -> Any:
-        import rtmidi
-
-        return rtmidi.MidiIn(self._api, name=CLIENT)
-
-
-def check_api(api: str | None) -> None:
-    """Refuse (ParameterError) a MIDI system that is not here: RtMidi would take another one."""
-    import rtmidi
-
-    compiled = rtmidi.get_compiled_api()
-    if api is not None and _number(api) not in compiled:
-        there = ", ".join(name for name in APIS if _number(name) in compiled) or "none"
-        raise ParameterError(f"--midi-api {api}: is not of this system; there are: {there}")
-
-
-def open_client(api: str | int | None) -> tuple[Any, str]:
-    """Open a client of the named MIDI system, or of the first there is; or None, and why."""
-    import rtmidi
-
-    if isinstance(api, str):
-        wanted = [_number(api)]
-    else:
-        wanted = [api] if api is not None else list(rtmidi.get_compiled_api())
-    problem = "RtMidi knows no MIDI system here"
-    for number in wanted:
-        try:
-            return rtmidi.MidiIn(number, name=CLIENT), ""
-        except (rtmidi.RtMidiError, SystemError) as error:
-            problem = str(error)
-    return None, problem
-
 
 def list_inputs() -> tuple[str, list[str], str]:
     """List the MIDI inputs: the system, their stable names, and why there is no system."""
-    client, problem = open_client(None)
-    if client is None:
-        return "", [], problem
-    return api_name(client.get_current_api()), StableNames().of(client.get_ports()), ""
-
-
-def _number(api: str) -> int:
-    import rtmidi
-
-    return int(getattr(rtmidi, f"API_{APIS[api]}"))
-
-
-def api_name(number: int) -> str:
-    """A MIDI system's display name."""
-    import rtmidi
-
-    return str(rtmidi.get_api_display_name(number))
+    try:
+        system = open_system(None)
+    except DeviceError as error:
+        return "", [], str(error)
+    return system.name, StableNames().of(system.ports()), ""
 
 
 def _feed(order: Message) -> MidiFeed:
@@ -273,7 +208,7 @@ def _feed(order: Message) -> MidiFeed:
 
 def main() -> None:
     """Serve the parent process until it closes the pipe."""
-    # RtMidi's threads wait for others here, and JACK does not wait for them.
+    # Messages come in threads that wait for others here, and JACK does not wait for them.
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     parent = Parent()
     orders = parent.orders()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import gzip
 import hashlib
+import html
 import json
 import logging
 from collections.abc import Iterable, Iterator
@@ -140,8 +141,10 @@ def page_folder() -> Path:
     return shipped_folder("web")
 
 
-def write_page(folder: Path) -> list[Path]:
+def write_page(folder: Path, share_url: str = "") -> list[Path]:
     """Write the whole page into a folder; return its files, relative to the folder.
+
+    `share_url`: the address of the same page for everybody, which its links name.
 
     Where its module cannot be built, it is the page that was shipped, as it was then: parameters
     and snapshots may lie elsewhere in a module of other sources. Raises OutputError where one
@@ -160,6 +163,9 @@ def write_page(folder: Path) -> list[Path]:
         write(folder)
         beginnings = write_capture_headers(folder / CAPTURES)
         index = (folder / INDEX).read_text("utf-8").replace(*KEPT, 1)
+        if share_url:
+            meta = f'<meta name="yehu-share" content="{html.escape(share_url)}">'
+            index = index.replace(HEAD, f"{HEAD}\n{meta}", 1)
         (folder / INDEX).write_text(index, "utf-8")
         files = [*written, *map(Path, sorted(GENERATED)), Path(MODULE)]
         files += [path.relative_to(folder) for path in beginnings]

@@ -1,0 +1,1 @@
+"""Makes and tries what a release brings; ``scripts/release`` runs it."""

@@ -1,0 +1,88 @@
+"""Machine code that the wheel brings, so that a first start compiles nothing and needs no numba.
+
+Each level of this machine's kind is compiled in a process of its own, a minute for the first. The
+code for ARM is made here too: LLVM makes it of what numba optimised for the lowest level.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import zlib
+from pathlib import Path
+
+from compile_all import MORE, warm_up
+
+from yehu_server.ahead.build import compiled
+from yehu_server.ahead.module import Target
+from yehu_server.compile import levels, machine_code
+from yehu_server.compile.cache_folder import cache_folder, source_hash
+from yehu_server.core.engine.warming import all_functions, functions_beside
+from yehu_server.util.checksummed import read_checksummed, write_checksummed
+
+ARM = Target("aarch64-unknown-linux-gnu", "generic")
+ARM_LEVEL = "aarch64"
+
+
+def write_all(folder: Path) -> list[Path]:
+    """Write the files of all levels into a folder; return them."""
+    paths: list[Path] = []
+    for level in levels.levels():
+        done = subprocess.run(  # noqa: S603 - this module
+            [sys.executable, "-m", "releases.machine_code", str(folder.absolute())],
+            env={**os.environ, levels.VARIABLE: level},
+            check=True,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        paths += map(Path, done.stdout.splitlines())
+    return paths
+
+
+def _write_level(folder: Path) -> list[Path]:
+    """Write the files of the level that this process compiles for; of the lowest, ARM's too."""
+    warm_up()
+    paths = []
+    for what in (machine_code.PLAYING, *MORE):
+        made = machine_code.file_in(cache_folder(), what)
+        payload = read_checksummed(made)
+        if payload is None:
+            raise SystemExit(f"{levels.level()}: nothing was compiled")
+        head, _, body = payload.partition(b"\n")
+        functions = json.loads(head)["functions"]
+        system = (levels.triple(), levels.level())
+        paths.append(_write(folder / made.name, system, what, functions, body))
+        if levels.level() == levels.lowest() and levels.triple() != ARM.triple:
+            natives = functions_beside(MORE[what]) if what in MORE else all_functions()
+            code = compiled(natives, ARM)
+            # All are in the object of the first.
+            sizes = [len(code), *[0] * (len(natives) - 1)]
+            functions = [
+                [function.name, function.name, size]
+                for function, size in zip(natives, sizes, strict=True)
+            ]
+            name = made.name.replace(f"{system[0]}-{system[1]}", f"{ARM.triple}-{ARM_LEVEL}")
+            body = zlib.compress(code, 9)
+            paths.append(_write(folder / name, (ARM.triple, ARM_LEVEL), what, functions, body))
+    return paths
+
+
+def _write(
+    path: Path,
+    system: tuple[str, str],
+    what: str,
+    functions: list[list[object]],
+    body: bytes,
+) -> Path:
+    about = [*system, source_hash(what, is_shipped=True)]
+    head = {"format": machine_code.FORMAT, "made for": about, "functions": functions}
+    write_checksummed(path, json.dumps(head).encode() + b"\n" + body)
+    return path
+
+
+if __name__ == "__main__":
+    into = Path(sys.argv[1])
+    into.mkdir(parents=True, exist_ok=True)
+    print(*_write_level(into), sep="\n")

@@ -91,7 +91,7 @@ def test_what_was_learned_is_forgotten(server, at, capsys):
     assert load("mine/keyboard").of("/my/fader")[0].is_soft
     assert main(["learn", "--forget", "/playing/vibrato", *at]) == 0
     assert "/playing/vibrato: 1 forgotten" in capsys.readouterr().out
-    assert not load("mine/keyboard").of("/my/fader")
+    assert server.player.mapping == load("keyboard", user_first=True) == load("keyboard")
 
 
 def test_what_a_part_moves_is_learned_by_its_mapping_alone(duo, capsys):

@@ -72,6 +72,19 @@ def test_a_control_is_added_and_moves_what_it_learned_last():
     assert unlearn(mapping, target) == (mapping, 0)
 
 
+def test_a_file_in_which_nothing_is_left_is_removed(settings):
+    """Or each start would say that the user's own mapping plays, which is the shipped one."""
+    file = settings / "mappings" / "keyboard.toml"
+    mapping, _ = learn(load("keyboard"), "/playing/vibrato", KNOB, soft=False)
+    mapping, _ = unlearn(mapping, "/playing/vibrato")
+    assert not file.exists()
+    assert mapping == load("keyboard")
+    mapping, _ = learn(mapping, "/playing/vibrato", KNOB, soft=False)
+    file.write_text("# My knobs.\n" + file.read_text())
+    unlearn(mapping, "/playing/vibrato")
+    assert file.read_text().startswith("# My knobs.")
+
+
 def test_others_are_taken_away_only_if_asked_and_come_back():
     vibrato = load("keyboard-vibrato-wheel")
     before = movers(vibrato, "/playing/vibrato")

@@ -17,7 +17,14 @@ from yehu_server.errors import MappingError
 from yehu_server.params.table import find
 from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, override_key
-from yehu_server.playing.mapping import Mapping, mapping_folder, user_folder, with_bases
+from yehu_server.playing.mapping import (
+    Mapping,
+    load,
+    mapping_folder,
+    shipped_mappings,
+    user_folder,
+    with_bases,
+)
 from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, settable_param, text_of
 from yehu_server.playing.mapping_writer import as_toml, edited
 from yehu_server.playing.sources import COARSE, FINE_ABOVE, OF_ONE_NOTE, RESERVED, STEPS, is_address
@@ -227,7 +234,13 @@ def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int
             binds[binds.index(newer)] = _replacing(newer, [returned])
     removed = [own for own in contents.binds if own not in binds]
     added = [own for own in binds if own not in remaining]
-    return _save(mapping, path, edited(contents, text, removed, added)), len(dropped)
+    text = edited(contents, text, removed, added)
+    if path.stem in shipped_mappings() and path.parent == user_folder():
+        shipped = load(path.stem)
+        if text.split() == as_toml(_new_contents(shipped)).split():  # nothing is left of the user
+            path.unlink(missing_ok=True)
+            return replace(shipped, mpe=mapping.mpe), len(dropped)
+    return _save(mapping, path, text), len(dropped)
 
 
 def others(mapping: Mapping, target: str, source: str) -> list[str]:
@@ -288,9 +301,14 @@ def _own_contents(mapping: Mapping, path: Path) -> tuple[MappingFile, str]:
     """Contents and text of the user's file; where there is none, of a new one with this base."""
     if path.exists():
         return read_mapping_file(path), text_of(path)
-    about = f"{mapping.about} With what you have taught it."
-    contents = MappingFile(mapping.name, base=mapping.files[0].stem, about=about)
+    contents = _new_contents(mapping)
     return contents, as_toml(contents)
+
+
+def _new_contents(mapping: Mapping) -> MappingFile:
+    """A file of the user's with a shipped mapping as its base, of which nothing is changed yet."""
+    about = f"{mapping.about} With what you have taught it."
+    return MappingFile(mapping.name, base=mapping.files[0].stem, about=about)
 
 
 def _save(mapping: Mapping, path: Path, text: str) -> Mapping:

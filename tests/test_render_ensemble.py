@@ -12,6 +12,7 @@ import pytest
 import soundfile
 from fiddles import SLACK_TOML
 from midi_files import midi_file, notes
+from pitch import cents, hertz, pitch_of
 
 from yehu_server.cli import _parser
 from yehu_server.cli.ensemble_parts import players_of
@@ -239,8 +240,9 @@ def test_each_part_is_moved_into_the_range_of_its_own_instrument(tmp_path):
     words = ("render", tune, "-o", tmp_path / "out.wav", "--ensemble", band)
     arguments = _parser().parse_args([*map(str, words)])
 
-    def scores_for(quantities: Quantities) -> list[Score]:
-        return [read_any(tune, ReadOptions(all_parts=True, within=notes_of(quantities)))]
+    def scores_for(quantities: Quantities | None) -> list[Score]:
+        is_moved, within = quantities is not None, notes_of(quantities or Quantities())
+        return [read_any(tune, ReadOptions(all_parts=True, in_range=is_moved, within=within))]
 
     players = players_of(arguments, scores_for, PlayingOptions())
     keys = [
@@ -248,6 +250,24 @@ def test_each_part_is_moved_into_the_range_of_its_own_instrument(tmp_path):
         for part in players.parts
     ]
     assert keys == [[74, 75, 76, 77], [62, 63, 64, 65]]
+
+
+def test_a_low_fiddle_plays_the_bass_of_a_quartet_where_it_is_written(command, tmp_path):
+    """Its example has the cello on a low fiddle; the others are yehus, and move as a whole."""
+    lines = {1: 72, 2: 67, 3: 55, 4: 40}
+    score = midi_file(tmp_path / "q.mid", [note for each in lines.items() for note in line(*each)])
+    band = shipped_folder("examples") / "quartet.toml"
+    words = ("render", score, "-o", tmp_path / "out.wav", "--ensemble", band, "--tail", 0.5)
+    code, _, err = command(*words, "--stems", tmp_path)
+    assert code == 0, err
+    moves = [each for each in err.splitlines() if "moved to fit" in each]
+    assert moves == ["yehu-server: q: moved to fit F4 to F6: viola an octave up"]
+    stem = read(next(tmp_path.glob("04-*.wav")))
+    sound = stem[: round(0.22 * 44100)].sum(axis=1)[4410:]
+    assert abs(cents(pitch_of(sound, 44100.0), hertz(40))) < 30.0
+    code, _, err = command(*words[:4], "--ensemble", "--overwrite", "--tail", 0.5)
+    assert code == 0
+    assert "channel 4 three octaves up (a deeper fiddle for channel 4: docs/ensemble.md)" in err
 
 
 def test_what_an_ensemble_file_names_must_be_there(refused, trio, tmp_path):

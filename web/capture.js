@@ -172,19 +172,18 @@ export function checked(performance) {
  * output, is its owner's. It frees nothing that is held, and ends no notes of others at a server.
  * @param {Performance} performance
  * @param {boolean} isServers whether a server plays it
- * @returns {{played: Performance, leftOut: number}} and the number of settings that are left out
+ * @returns {{played: Performance, leftOut: string[]}} and the addresses of what is left out
  */
 export function notesAndGestures({ values, commands, ...rest }, isServers) {
   /** @param {import('./playing/table.js').Param} param */
   const isFree = ({ isOwnerOnly }) => !(isServers && isOwnerOnly);
-  const brings = commands.filter(
-    ({ kind, index }) =>
-      kind !== HOLD && kind !== RAMP && (!OF_PARAMETERS.includes(kind) || isFree(TABLE[index])),
-  );
+  /** @param {Command} command */
+  const isPlayed = ({ kind, index }) =>
+    kind !== HOLD && kind !== RAMP && (!OF_PARAMETERS.includes(kind) || isFree(TABLE[index]));
   const played = {
     ...rest,
     values: Object.fromEntries(Object.entries(values).filter(([address]) => isFree(find(address)))),
-    commands: brings.map((command) => {
+    commands: commands.filter(isPlayed).map((command) => {
       if (command.kind === RELEASE) return { ...command, value: 1 };
       return command.kind === STOP && isServers ? { ...command, value: 0 } : command;
     }),
@@ -193,9 +192,13 @@ export function notesAndGestures({ values, commands, ...rest }, isServers) {
   const brought = Object.keys(values).filter(
     (address) => values[address] !== find(address).default,
   );
-  const kept = brought.filter((address) => address in played.values);
-  const leftOut = commands.length - played.commands.length + brought.length - kept.length;
-  return { played, leftOut };
+  const others = brought.filter((address) => !(address in played.values));
+  const dropped = new Set(others);
+  for (const command of commands) {
+    const address = isPlayed(command) ? null : addressOf(command);
+    if (address !== null && address !== SILENCE) dropped.add(address);
+  }
+  return { played, leftOut: [...dropped] };
 }
 
 /**

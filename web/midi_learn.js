@@ -12,7 +12,7 @@ import {
   readLearned,
   spanned,
   withBind,
-  withoutBind,
+  withoutBinds,
 } from "./playing/learned.js";
 import { Learner } from "./playing/learner.js";
 import { remember, settings } from "./settings.js";
@@ -25,6 +25,7 @@ const PATIENCE = 60_000; // ms to wait for something to be moved
  * @typedef {object} Wait
  * @property {string} target
  * @property {boolean} isSoft
+ * @property {boolean} isAlone
  * @property {Learner} learner
  * @property {number} timer
  */
@@ -38,7 +39,10 @@ export class MidiLearn extends EventTarget {
     this.instrument = instrument;
     /** What the last wait has found; null: nothing was moved. @type {LearnedBind | null} */
     this.found = null;
+    /** Targets that its source moved before. @type {string[]} */
+    this.lost = [];
     this.isSoft = false; // whether what is learned next waits for its target
+    this.isAlone = false; // and takes it away from all other controls
     /** Name of the mapping. */
     this.name = Object.hasOwn(MAPPINGS, settings.mapping) ? settings.mapping : facts.defaultMapping;
     /** Learned binds over this mapping. @type {readonly LearnedBind[]} */
@@ -68,7 +72,8 @@ export class MidiLearn extends EventTarget {
     this.#end();
     this.found = null;
     const timer = window.setTimeout(() => this.cancel(), PATIENCE);
-    this.#wait = { target, isSoft: this.isSoft, learner: new Learner(), timer };
+    const { isSoft, isAlone } = this;
+    this.#wait = { target, isSoft, isAlone, learner: new Learner(), timer };
     this.dispatchEvent(new Event("wait"));
   }
 
@@ -92,16 +97,31 @@ export class MidiLearn extends EventTarget {
   hear(bytes, port) {
     const source = this.#wait?.learner.hear(bytes, port);
     if (!source || !this.#wait) return;
-    this.found = bindOf(this.#wait.target, source, this.#wait.isSoft);
+    const { target, isSoft, isAlone } = this.#wait;
+    const before = this.targets(source);
+    this.found = bindOf(target, source, isSoft, isAlone);
     this.#keep(withBind(this.binds, this.found));
+    this.lost = before.filter((other) => !this.targets(source).includes(other));
     this.cancel();
   }
 
   // -- what was learned --------------------------------------------------------------------
 
+  /** The targets that a source moves. @param {string} source */
+  targets(source) {
+    const binds = this.instrument.mapping.binds.filter((bind) => bind.source === source);
+    return [...new Set(binds.map((bind) => bind.target))];
+  }
+
+  /** The sources that move a target. @param {string} target */
+  movers(target) {
+    const binds = this.instrument.mapping.binds.filter((bind) => bind.target === target);
+    return [...new Set(binds.map((bind) => bind.source))];
+  }
+
   /** @param {LearnedBind} bind */
   forget(bind) {
-    this.#keep(withoutBind(this.binds, bind));
+    this.#keep(withoutBinds(this.binds, [bind]));
   }
 
   /**

@@ -12,7 +12,7 @@ from curves import from_unit
 from yehu_server.cli import main
 from yehu_server.errors import MappingError, OutputError
 from yehu_server.params.table import TABLE
-from yehu_server.playing.learn import LearnedSource, changes, learn, unlearn
+from yehu_server.playing.learn import LearnedSource, added, changes, learn, others, unlearn
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 
 KNOB = LearnedSource("cc 20")
@@ -39,7 +39,8 @@ def test_what_is_learned_for_a_shipped_mapping_is_there_at_the_next_start(settin
         again = load(name, user_first=True)
         assert again == mapping == load(f"mine/{name}")
         assert moved_by(again, "cc 20") == ["/playing/vibrato_press"]
-        assert {*again.binds} - {again.of("cc 20")[0]} <= {*load(name).binds}
+        (bind,) = again.of("cc 20")
+        assert {*again.binds} == {bind, *load(name).binds}  # nothing else is taken away
         assert moved_by(load(name), "cc 20") == []  # rendering does not use it
 
 
@@ -54,20 +55,71 @@ def test_every_parameter_that_the_player_does_not_move_can_be_learned(everything
         assert load("mine/keyboard") == mapping, param.address
 
 
-def test_nothing_else_moves_what_was_learned_and_a_knob_moves_what_it_learned_last():
-    assert movers(load("keyboard"), "/playing/pressure") == ["velocity"]
-    mapping, _ = learn(load("keyboard"), "/playing/pressure", KNOB, soft=False)
-    assert movers(mapping, "/playing/pressure") == ["cc 20"]
-    mapping, _ = learn(mapping, "/playing/pressure", LearnedSource("cc 1/33"), soft=False)
-    assert movers(mapping, "/playing/pressure") == ["cc 1/33"]
+def test_a_control_is_added_and_moves_what_it_learned_last():
+    target = "/playing/pressure"
+    assert movers(load("keyboard"), target) == ["velocity"]
+    mapping, _ = learn(load("keyboard"), target, KNOB, soft=False)
+    mapping, _ = learn(mapping, target, LearnedSource("cc 1/33"), soft=False)
+    assert movers(mapping, target) == ["velocity", "cc 20", "cc 1/33"]
+    assert others(mapping, target, "cc 20") == ["velocity", "cc 1/33"]
     mapping, _ = learn(mapping, "/output/gain", LearnedSource("cc 1"), soft=False)
     assert moved_by(mapping, "cc 1") == ["/output/gain"]
     assert moved_by(mapping, "cc 1/33") == []
-    mapping, count = unlearn(mapping, "/output/gain")
-    mapping, count = unlearn(mapping, "/playing/pressure")
-    assert count == 1
-    assert movers(mapping, "/playing/pressure") == ["velocity"]
-    assert unlearn(mapping, "/playing/pressure") == (mapping, 0)
+    mapping, _ = unlearn(mapping, "/output/gain")
+    assert movers(mapping, target) == ["velocity", "cc 20", "cc 1/33"]
+    mapping, count = unlearn(mapping, target)
+    assert (count, mapping.binds) == (2, load("keyboard").binds)
+    assert unlearn(mapping, target) == (mapping, 0)
+
+
+def test_a_file_in_which_nothing_is_left_is_removed(settings):
+    """Or each start would say that the user's own mapping plays, which is the shipped one."""
+    file = settings / "mappings" / "keyboard.toml"
+    mapping, _ = learn(load("keyboard"), "/playing/vibrato", KNOB, soft=False)
+    mapping, _ = unlearn(mapping, "/playing/vibrato")
+    assert not file.exists()
+    assert mapping == load("keyboard")
+    mapping, _ = learn(mapping, "/playing/vibrato", KNOB, soft=False)
+    file.write_text("# My knobs.\n" + file.read_text())
+    unlearn(mapping, "/playing/vibrato")
+    assert file.read_text().startswith("# My knobs.")
+
+
+def test_others_are_taken_away_only_if_asked_and_come_back():
+    vibrato = load("keyboard-vibrato-wheel")
+    before = movers(vibrato, "/playing/vibrato")
+    assert len(before) > 1
+    mapping, _ = learn(vibrato, "/playing/vibrato", LearnedSource("cc 21"), soft=False, only=True)
+    assert movers(mapping, "/playing/vibrato") == ["cc 21"]
+    mapping, _ = unlearn(mapping, "/playing/vibrato")
+    assert movers(mapping, "/playing/vibrato") == before
+
+
+def test_what_was_added_what_stays_and_what_is_gone_is_said():
+    before = load("keyboard-vibrato-wheel")
+    for source, only, said in [
+        ("cc 21", False, "cc 21 added: /playing/vibrato; cc 77, cc 1 keep it"),
+        ("cc 77", True, "cc 77 added: /playing/vibrato; cc 1 no longer moves /playing/vibrato"),
+    ]:
+        mapping, path = learn(
+            before, "/playing/vibrato", LearnedSource(source), soft=False, only=only
+        )
+        assert added(before, mapping, "/playing/vibrato", source) == said
+        path.unlink()
+
+
+def test_a_file_of_before_controllers_were_added_still_moves_its_parameter_alone(settings):
+    """Then each learned bind was alone, and nothing else marked it."""
+    file = settings / "mappings" / "keyboard.toml"
+    file.parent.mkdir(parents=True)
+    old = 'source = "cc 20"\ntarget = "/playing/vibrato"\nalone = true\nglobal = true\n'
+    file.write_text(f'name = "keyboard"\nbase = "keyboard"\n[[bind]]\n{old}')
+    mapping = load("mine/keyboard")
+    assert movers(mapping, "/playing/vibrato") == ["cc 20"]
+    mapping, _ = learn(mapping, "/playing/vibrato", LearnedSource("cc 21"), soft=False)
+    assert movers(mapping, "/playing/vibrato") == ["cc 20", "cc 21"]
+    mapping, count = unlearn(mapping, "/playing/vibrato")
+    assert (count, mapping.binds) == (2, load("keyboard").binds)
 
 
 def test_a_file_of_ones_own_keeps_its_comments_and_order(tmp_path):
@@ -90,7 +142,7 @@ target = "/playing/vibrato"
     assert path == file
     assert file.read_text().startswith(text)
     assert tomllib.loads(file.read_text())["bind"][2] == {
-        "source": "/x", "target": "/playing/tremolo", "input": [0, 127], "alone": True
+        "source": "/x", "target": "/playing/tremolo", "input": [0, 127], "learned": True
     }  # fmt: skip
     unlearn(mapping, "/playing/vibrato")
     assert [bind["source"] for bind in tomllib.loads(file.read_text())["bind"]] == ["cc 4", "/x"]
@@ -127,7 +179,7 @@ def test_what_two_servers_learn_at_the_same_time_is_kept():
     own = 0 if process == 0 else 1
     for number in range(10):
         knob = LearnedSource(f"cc {20 + 20 * own + number}")
-        learn(load("keyboard", user_first=True), targets[own], knob, soft=False)
+        learn(load("keyboard", user_first=True), targets[own], knob, soft=False, only=True)
     if process == 0:
         os._exit(0)
     os.waitpid(process, 0)
@@ -162,7 +214,7 @@ def file(tmp_path) -> Path:
 
 
 def taught(mapping: Mapping, target: str, source: str) -> Mapping:
-    return learn(mapping, target, LearnedSource(source), soft=False)[0]
+    return learn(mapping, target, LearnedSource(source), soft=False, only=True)[0]
 
 
 def binds(mapping: Mapping) -> set[tuple]:
@@ -186,8 +238,9 @@ def test_what_learning_takes_is_reported_and_comes_back_also_after_a_new_start(f
 VIBRATO, GAIN = "/playing/vibrato", "/output/gain"
 
 
+@pytest.mark.parametrize("only", [False, True])
 @pytest.mark.parametrize("alone", ["", "\nalone = true"])
-def test_after_all_is_forgotten_all_is_as_it_was(subtests, file, alone):
+def test_after_all_is_forgotten_all_is_as_it_was(subtests, file, alone, only):
     for name, lessons, forgotten in [
         ("all that the control did", [(GAIN, "cc 5")], [GAIN]),
         ("another control for the target", [(VIBRATO, "cc 20"), (VIBRATO, "cc 21")], [VIBRATO]),
@@ -200,10 +253,10 @@ def test_after_all_is_forgotten_all_is_as_it_was(subtests, file, alone):
             file.write_text(TEXT.replace("span = [0, 30]", f"span = [0, 30]{alone}"))
             before = mapping = load(str(file))
             for target, source in lessons:
-                mapping = taught(mapping, target, source)
+                mapping, _ = learn(mapping, target, LearnedSource(source), soft=False, only=only)
             for target in forgotten:
                 mapping, count = unlearn(mapping, target)
-                assert count == 1
+                assert count >= 1
             assert binds(mapping) == binds(before)
 
 

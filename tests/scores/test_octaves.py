@@ -109,7 +109,10 @@ def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(file):
     played = read_any(tracks, ReadOptions(all_parts=True))
     by_channel = [[each.key for each in notes_of(played) if each.channel == n] for n in range(3)]
     assert by_channel == [[72, 74, 76, 77, 79], [76, 79], [70]]
-    expected = "moved to fit F4 to F6: Flute an octave up; Cello three octaves up"
+    expected = (
+        "moved to fit F4 to F6: Flute an octave up; Cello three octaves up"
+        " (a deeper fiddle for Cello: docs/ensemble.md)"
+    )
     assert played.remarks == (expected,)
     assert keys(read_any(tracks)) == [72, 74, 76, 77, 79]
     line = "plays Flute; also there: Cello, channel 3 (--part"
@@ -125,7 +128,8 @@ def test_only_what_is_played_counts_in_what_moves(file):
     assert not read_any(song, only).remarks
     assert keys(read_any(song, only)) == [70, 40, 38, 40]
     asked = ReadOptions(all_parts=True, channels={9})
-    assert read_any(song, asked).remarks == ("moved to fit F4 to F6: three octaves up",)
+    line = "moved to fit F4 to F6: three octaves up (a deeper fiddle for it: docs/ensemble.md)"
+    assert read_any(song, asked).remarks == (line,)
 
 
 def test_channels_of_mpe_are_one_part_whether_the_file_says_it_or_the_player(file):

@@ -17,6 +17,7 @@ import { FREE, ParameterError, find } from "./table.js";
  * @property {string} target
  * @property {readonly number[] | null} span the target's values at the two ends; null: its range
  * @property {boolean} isSoft the target moves only once the source has reached its value
+ * @property {boolean} isAlone whether no bind of the mapping moves the target beside it
  * @property {boolean} isGlobal whether it moves every note, wherever the source is moved
  * @property {readonly LearnedBind[]} replaces those that come back when it is forgotten
  *
@@ -42,9 +43,10 @@ const EXPONENTIAL = "exp";
  * @param {string} target
  * @param {string} source
  * @param {boolean} isSoft
+ * @param {boolean} [isAlone]
  * @returns {LearnedBind}
  */
-export function bindOf(target, source, isSoft) {
+export function bindOf(target, source, isSoft, isAlone = false) {
   const { address, playerControlled } = find(target);
   if (playerControlled) throw new ParameterError(`${address} is moved by the player`);
   const isByRange = source === BEND && address === "/playing/bend";
@@ -53,6 +55,7 @@ export function bindOf(target, source, isSoft) {
     target: address,
     span: null,
     isSoft: isSoft && !isOfOneNote(source) && !isByRange, // these cannot wait
+    isAlone,
     isGlobal: !isOfOneNote(source),
     replaces: [],
   };
@@ -84,7 +87,7 @@ function isWithin({ target }, span) {
 }
 
 /**
- * Learned binds with one more, which replaces those of its controller and of its target.
+ * Learned binds with one more, which replaces those of its controller and, if alone, of its target.
  * @param {readonly LearnedBind[]} learned
  * @param {LearnedBind} bind
  */
@@ -94,13 +97,13 @@ export function withBind(learned, bind) {
 }
 
 /**
- * Learned binds without one: what it replaced comes back, but for what was learned since.
+ * Learned binds without some: what these replaced comes back, but for what was learned since.
  * @param {readonly LearnedBind[]} learned
- * @param {LearnedBind} bind
+ * @param {readonly LearnedBind[]} dropped
  */
-export function withoutBind(learned, bind) {
-  const binds = learned.filter((own) => own !== bind);
-  for (const returned of bind.replaces) {
+export function withoutBinds(learned, dropped) {
+  const binds = learned.filter((own) => !dropped.includes(own));
+  for (const returned of dropped.flatMap((bind) => bind.replaces)) {
     const newer = binds.findIndex((own) => excludes(own, returned));
     if (newer < 0) binds.push(returned);
     else binds[newer] = replacing(binds[newer], [returned]);
@@ -109,12 +112,13 @@ export function withoutBind(learned, bind) {
 }
 
 /**
- * Whether two binds cannot stand beside each other.
+ * Whether a bind replaces another.
  * @param {LearnedBind} bind
  * @param {LearnedBind} other
  */
 function excludes(bind, other) {
-  return overrideKey(bind) === overrideKey(other) || bind.target === other.target;
+  const isOfTarget = bind.isAlone && bind.target === other.target;
+  return isOfTarget || overrideKey(bind) === overrideKey(other);
 }
 
 /**
@@ -134,15 +138,15 @@ function replacing(bind, dropped) {
 }
 
 /**
- * A mapping overridden by learned binds, as one is by a file that has it as its base; each replaces
- * all that moved its target.
+ * A mapping overridden by learned binds, as one is by a file that has it as its base; one that is
+ * alone replaces all that moved its target.
  * @param {Mapping} mapping
  * @param {readonly LearnedBind[]} learned
  * @returns {Mapping}
  */
 export function merged(mapping, learned) {
   const overridden = new Set(learned.map(overrideKey));
-  const moved = new Set(learned.map((bind) => bind.target));
+  const moved = new Set(learned.filter((bind) => bind.isAlone).map((bind) => bind.target));
   const kept = mapping.binds.filter(
     (bind) => !overridden.has(overrideKey(bind)) && !moved.has(bind.target),
   );
@@ -172,14 +176,15 @@ export function fileOf(base, mapping, learned) {
 }
 
 /** The entries of a bind, without those at their defaults. @param {LearnedBind} bind */
-function entriesOf({ source, target, span, isSoft, isGlobal }) {
+function entriesOf({ source, target, span, isSoft, isAlone, isGlobal }) {
   return {
     source,
     target,
     ...(span && { span }),
     ...(isSoft && { soft: true }),
-    alone: true,
+    ...(isAlone && { alone: true }),
     ...(isGlobal && { global: true }),
+    learned: true,
   };
 }
 
@@ -214,9 +219,9 @@ export function readLearned(kept) {
  * @returns {LearnedBind | null} null: it is none
  */
 function readBind(kept) {
-  const { source, target, span, isSoft, replaces } = Object(kept);
+  const { source, target, span, isSoft, isAlone, replaces } = Object(kept);
   if (!isSource(source) || !FREE.some(({ address }) => address === target)) return null;
-  const plain = bindOf(target, source, isSoft === true);
+  const plain = bindOf(target, source, isSoft === true, isAlone !== false); // once all were alone
   const isSpan = Array.isArray(span) && span.length === 2 && isWithin(plain, span);
   const bind = isSpan ? spanned(plain, span[0], span[1]) : plain;
   const others = Array.isArray(replaces)

@@ -34,12 +34,13 @@ export function makeLearning(target, taught, midi) {
   const line = make("p", { class: "soft learned", role: "status" });
   const update = () => {
     const isAwaited = taught.awaited === target;
-    const bind = taught.binds.find((own) => own.target === target);
+    const binds = taught.binds.filter((own) => own.target === target);
+    const source = binds.map((own) => sourceName(own.source)).join(translate("learn.and"));
     button.setAttribute("aria-label", `${translate("learn")}: ${nameFor(target)}`);
     button.setAttribute("aria-pressed", String(isAwaited));
-    button.classList.toggle("taught", bind !== undefined);
+    button.classList.toggle("taught", binds.length > 0);
     if (isAwaited) line.textContent = translate("learn.move");
-    else line.textContent = bind ? translate("learn.by", { source: sourceName(bind.source) }) : "";
+    else line.textContent = source ? translate("learn.by", { source }) : "";
   };
   follow(taught, update);
   return [button, line];
@@ -50,6 +51,7 @@ export function showLearning({ taught, midi }) {
   const select = make("select", { "aria-label": words("learn.target") }, groups());
   const button = teacher(() => select.value, taught, midi);
   const soft = makeSwitch(words("learn.soft"), taught.isSoft, (isOn) => (taught.isSoft = isOn));
+  const alone = makeSwitch(words("learn.alone"), taught.isAlone, (isOn) => (taught.isAlone = isOn));
   const word = make("p", { class: "soft", role: "status" });
   const list = make("ul", { class: "binds", "aria-label": words("learn.list") });
   const save = makeButton(words("learn.save"), () => {
@@ -65,7 +67,7 @@ export function showLearning({ taught, midi }) {
     button.textContent = translate(awaited ? "learn.stop" : "learn");
     button.setAttribute("aria-pressed", String(awaited !== null));
     if (awaited) word.textContent = `${nameFor(awaited)}: ${translate("learn.move")}`;
-    else word.textContent = found ? `${nameFor(found.target)}: ${movedBy(found)}` : "";
+    else word.textContent = found ? `${nameFor(found.target)}: ${added(found, taught)}` : "";
   };
   /** @type {{key: string, element: HTMLElement, show: (bind: LearnedBind) => void}[]} */
   let rows = [];
@@ -89,6 +91,7 @@ export function showLearning({ taught, midi }) {
     note(words("learn.about")),
     make("div", { class: "row" }, [make("div", { class: "wide" }, [select]), button]),
     make("div", {}, [soft, note(words("learn.soft.about"))]),
+    make("div", {}, [alone, note(words("learn.alone.about"))]),
     word,
     list,
     saving,
@@ -187,9 +190,20 @@ function row(bind, taught) {
   return { key: keyOf(bind), element, show };
 }
 
-/** @param {LearnedBind} bind */
-function movedBy({ source }) {
-  return translate("learn.by", { source: sourceName(source) });
+/**
+ * What was added, which controls move the parameter as before, and what this one moves no longer.
+ * @param {LearnedBind} bind
+ * @param {MidiLearn} taught
+ */
+function added({ source, target }, taught) {
+  const and = translate("learn.and");
+  const others = taught.movers(target).filter((other) => other !== source);
+  const sources = others.map(sourceName).join(and);
+  const targets = taught.lost.map(nameFor).join(and);
+  const words = [translate("learn.by", { source: sourceName(source) })];
+  if (sources) words.push(translate("learn.keep", { sources }));
+  if (targets) words.push(translate("learn.lost", { targets }));
+  return words.join(translate("learn.then"));
 }
 
 /** The display name of a source. @param {string} source */

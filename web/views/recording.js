@@ -16,7 +16,11 @@ import {
 } from "../elements.js";
 import { CaptureWriter, Replayer, fileOf, notesAndGestures, readCapture } from "../capture.js";
 import { isPublic, linkOf, readLink } from "../link.js";
-import { onLanguage, translate } from "../i18n.js";
+import { onLanguage, translate, translateOr } from "../i18n.js";
+import { find as findParameter } from "../playing/table.js";
+import { nameFor } from "./slider.js";
+
+const MAX_NAMED = 4; // settings in a line
 
 /**
  * @param {Page} page
@@ -114,13 +118,13 @@ function performances({ instrument, hands }) {
   /**
    * @param {import('../capture.js').Performance} performance
    * @param {string} name what is said of it
-   * @returns {Replayer}
+   * @returns {{left: string, replayer: Replayer}} also what is said of what is left out
    */
   function play(performance, name = "") {
     replayer?.stop();
     const isServers = ["remote", "listening"].includes(instrument.sound?.status.backend ?? "");
     const { played, leftOut } = notesAndGestures(performance, isServers);
-    const left = leftOut > 0 ? translate("keep.left", { count: leftOut }) : "";
+    const left = leftOutLine(leftOut);
     playing = [name, left].filter((text) => text !== "").join(" · ");
     word.textContent = playing;
     const one = new Replayer(instrument, played);
@@ -132,7 +136,7 @@ function performances({ instrument, hands }) {
       load.set(false);
       if (word.textContent === playing) word.textContent = ""; // a refused file stays said
     });
-    return one;
+    return { left, replayer: one };
   }
 
   /**
@@ -185,7 +189,7 @@ function performances({ instrument, hands }) {
 /**
  * Invite to listen to what the address of the page brings.
  * @param {Instrument} instrument
- * @param {(performance: import('../capture.js').Performance) => Replayer} play
+ * @param {(performance: import('../capture.js').Performance) => {left: string, replayer: Replayer}} play
  */
 async function invite(instrument, play) {
   const invitation = find("invite", HTMLElement);
@@ -212,11 +216,30 @@ async function invite(instrument, play) {
     });
     await instrument.start();
     if (!isAsked || !instrument.sound) return;
-    const one = play(brought);
-    await new Promise((resolve) => one.addEventListener("end", resolve, { once: true }));
+    const { left, replayer } = play(brought);
+    // Whoever opens a link has no panel open that would say it.
+    invitation.textContent = left;
+    invitation.className = "left-out";
+    invitation.hidden = left === "";
+    await new Promise((resolve) => replayer.addEventListener("end", resolve, { once: true }));
+    invitation.hidden = true;
   } catch {
     invitation.textContent = translate("keep.broken");
   }
+}
+
+/**
+ * What a link or file brings that is not played, by name; empty where all is.
+ * @param {readonly string[]} addresses
+ */
+function leftOutLine(addresses) {
+  if (addresses.length === 0) return "";
+  const names = addresses.slice(0, MAX_NAMED).map((address) => {
+    const { group } = findParameter(address);
+    return `${nameFor(address)} (${translateOr(`group.${group}`, group)})`;
+  });
+  if (addresses.length > MAX_NAMED) names.push("…");
+  return translate("keep.left", { names: names.join(translate("learn.and")) });
 }
 
 /**

@@ -17,6 +17,7 @@ from yehu_server.scores.score import Score
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
+    from yehu_server.core.player.note_range import NoteRange
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Part
     from yehu_server.scores.ensemble_file import EnsembleFile, PartEntry
@@ -35,19 +36,21 @@ class Players:
 
 def players_of(
     arguments: argparse.Namespace,
-    scores_for: Callable[[Quantities], list[Score]],
+    scores_for: Callable[[Quantities | None], list[Score]],
     playing: PlayingOptions,
 ) -> Players:
     """Give each part of some scores, which are played one after another, a player.
 
     Raises YehuError where there are too many parts, or what a file names is not there.
 
-    `scores_for`: reads the scores, with their parts moved into the range of an instrument.
+    `scores_for`: reads the scores, with their parts moved into the range of an instrument; with
+        None as they are written.
     `playing`: of all players, where an ensemble file does not say otherwise.
     """
     from yehu_server.playing.parts import seated
+    from yehu_server.playing.stringing import notes_of
     from yehu_server.rendering.options import Part
-    from yehu_server.scores.reading import part_of, percussion_notes
+    from yehu_server.scores.reading import part_name, part_of, percussion_notes
 
     scores = scores_for(playing.quantities)
     room: Values = ()
@@ -84,10 +87,33 @@ def players_of(
         files += own.files
         what = f"track {entry.track}" if entry.channel is None else f"channel {entry.channel + 1}"
         played = [part_of(score, entry.channel, entry.track) for score in read]
+        if any(each.instrument is not None for each in entries):
+            written = [part_of(score, entry.channel, entry.track) for score in scores_for(None)]
+            name = entry.name or part_name(read, entry.channel, entry.track)
+            within = notes_of(own.quantities)
+            played = [
+                _with_own_moves(score, whole, name, within)
+                for score, whole in zip(played, written, strict=True)
+            ]
         parts.append(Part.shaped(played, own, entry.name or what))
     if ensemble is not None:
         _warn_of_unplayed(ensemble, scores)
     return Players(tuple(parts), tuple(files), spare)
+
+
+def _with_own_moves(score: Score, written: Score, name: str, within: NoteRange) -> Score:
+    """A part whose remark on moves is of itself alone, since other parts have other instruments."""
+    from yehu_server.scores.octaves import NoteSpan, octaves_of
+    from yehu_server.scores.score import REST_S, notes_of
+    from yehu_server.scores.written.in_range import MOVED, line_of
+
+    remarks = [line for line in score.remarks if not line.startswith(MOVED)]
+    if len(remarks) < len(score.remarks):
+        spans = [NoteSpan(n.start_s, n.end_s, (float(n.key),)) for n in notes_of(written)]
+        octaves = octaves_of(spans, REST_S, within)
+        if octaves.summary:
+            remarks.append(line_of([(name, octaves)], within))
+    return replace(score, remarks=tuple(remarks))
 
 
 def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[PartEntry]:

@@ -1,7 +1,8 @@
-"""Bind the control that you move next to a parameter of a running server.
+"""Let the control that you move next move a parameter of a running server, too.
 
   yehu-server learn /playing/vibrato
   yehu-server learn --soft /playing/pressure /playing/bow_position
+  yehu-server learn --only /playing/vibrato
   yehu-server learn
   yehu-server learn --forget /playing/vibrato
   yehu-server learn --part 2 /playing/vibrato
@@ -38,7 +39,8 @@ def add_to(commands: Any) -> None:
         """
         parameters ADDRESS: the parameters; without any, the command asks for them
         --soft: soft take-over: the knob has no effect until it reaches the present value
-        --forget: remove the binds of these parameters
+        --only: take the parameter away from all other controls, until --forget
+        --forget: remove what was learned for these parameters, and give back what it took
         --part N: of several players, the one who moves the control, counted from 1 (default: 1)
         """,
         parameters={"nargs": "*"},
@@ -68,14 +70,16 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
         print_result(f"{address}: {count} forgotten")
         _print_binds(returned, "again")
         return
-    client.send(f"{own}/learn", address, int(arguments.soft))
+    client.send(f"{own}/learn", address, int(arguments.soft), int(arguments.only))
     (target,) = client.answer(f"{own}/learning").arguments
     print_result(f"move the control for {target} ... (Ctrl-C ends)", flush=True)
     try:
         for message in client.answers(LONGEST_S):
             if message.address == f"{own}/learned":
-                _, source, file, *lost = message.arguments
-                print_result(f"{source} moves {target}, kept in {file}")
+                _, source, file, others, *lost = message.arguments
+                print_result(f"{source} added: {target}, saved in {file}")
+                if others:
+                    print_result(f"  {others} {'keep' if ', ' in others else 'keeps'} it")
                 _print_binds(lost, "no longer, until --forget")
                 return
     except KeyboardInterrupt:

@@ -211,6 +211,7 @@ def _bind_fields(bind: Bind) -> dict[str, Any]:
         "soft": bind.is_soft,
         "alone": bind.is_exclusive,
         "global": bind.is_global,
+        "learned": bind.is_learned,
         "input": bind.input_range if is_address(bind.source) else None,
         "replaces": [_bind_fields(each) for each in bind.replaces] or None,
     }

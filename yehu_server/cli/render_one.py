@@ -156,9 +156,9 @@ def _counts(summary: Summary | PartSummary) -> dict[str, Any]:
 
 
 def _scores(
-    arguments: argparse.Namespace, playing: PlayingOptions, quantities: Quantities
+    arguments: argparse.Namespace, playing: PlayingOptions, quantities: Quantities | None
 ) -> list[Score]:
-    """Read all files, for an instrument of some quantities.
+    """Read all files, moved to fit an instrument of some quantities, or with None as written.
 
     Raises DamagedError where --strict refuses one; ScoreError where one cannot be read, or they
     last too long together.
@@ -167,7 +167,10 @@ def _scores(
 
     longest = arguments.max_duration
     whole = arguments.ensemble is not None or arguments.channel is not None
-    how = ReadOptions.by(replace(playing, quantities=quantities), arguments.part, all_parts=whole)
+    own = replace(playing, quantities=quantities or playing.quantities)
+    how = ReadOptions.by(own, arguments.part, all_parts=whole)
+    if quantities is None:
+        how = replace(how, in_range=False)
     read = partial(read_any, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
     scores = []
     for path in arguments.midi:

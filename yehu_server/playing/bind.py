@@ -78,6 +78,8 @@ class Bind:
     is_exclusive: bool = False
     # Whether it moves every note, on whichever port and channel the source is moved; see ``scope``.
     is_global: bool = False
+    # Whether MIDI learn made it; `unlearn` removes it before those that the user wrote.
+    is_learned: bool = False
     # Binds of the same file that MIDI learn took away for it; they come back with `unlearn`.
     replaces: tuple[Bind, ...] = ()
 
@@ -113,6 +115,7 @@ class Bind:
             "soft": self.is_soft,
             "alone": self.is_exclusive,
             "global": self.is_global,
+            "learned": self.is_learned,
         }
         return tuple(term for term, is_set in terms.items() if is_set)
 

@@ -17,7 +17,14 @@ from yehu_server.errors import MappingError
 from yehu_server.params.table import find
 from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, override_key
-from yehu_server.playing.mapping import Mapping, mapping_folder, user_folder, with_bases
+from yehu_server.playing.mapping import (
+    Mapping,
+    load,
+    mapping_folder,
+    shipped_mappings,
+    user_folder,
+    with_bases,
+)
 from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, settable_param, text_of
 from yehu_server.playing.mapping_writer import as_toml, edited
 from yehu_server.playing.sources import COARSE, FINE_ABOVE, OF_ONE_NOTE, RESERVED, STEPS, is_address
@@ -157,12 +164,13 @@ def own_file(mapping: Mapping) -> Path:
 
 
 def learn(
-    mapping: Mapping, target: str, found: LearnedSource, *, soft: bool
+    mapping: Mapping, target: str, found: LearnedSource, *, soft: bool, only: bool = False
 ) -> tuple[Mapping, Path]:
     """Bind a source to a target, over its whole range, and save the bind.
 
-    It replaces all other binds of the target and of the source, and moves the target for all notes,
-    on whichever device they are played. Those of the user's file are kept with it, for `unlearn`.
+    It moves the target for all notes, on whichever device they are played, beside the sources that
+    did so before, or with `only` in their place. It replaces all other binds of its source. What it
+    replaces in the user's file is kept with it, for `unlearn`.
     Returns the mapping with the bind, and the file that it was saved to. Raises MappingError where
     the file is wrong or cannot be written; nothing is changed then.
     """
@@ -173,8 +181,9 @@ def learn(
         curve=param.curve,
         input_range=found.input_range,
         is_soft=soft and found.source not in OF_ONE_NOTE,
-        is_exclusive=True,
+        is_exclusive=only,
         is_global=not (found.source in OF_ONE_NOTE or is_address(found.source)),
+        is_learned=True,
     )
     if bind.is_by_range:  # the bend range still sets its span
         bind = replace(bind, is_soft=False)
@@ -187,7 +196,7 @@ def learn(
 
 
 def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
-    """Remove the learned bind of a target from the user's file, and give back what it replaced.
+    """Remove the learned binds of a target from the user's file, and give back what they replaced.
 
     Where none is learned, those that the user has written are removed. Returns the mapping without
     them, and how many were removed. Raises MappingError as `learn`.
@@ -201,7 +210,7 @@ def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int
         return mapping, 0
     contents, text = _own_contents(mapping, path)
     of_target = [own for own in contents.binds if own.target == address]
-    dropped = [own for own in of_target if own.is_exclusive] or of_target
+    dropped = [own for own in of_target if _is_learned(own)] or of_target
     if not dropped:
         return mapping, 0
     remaining = [own for own in contents.binds if own not in dropped]
@@ -212,9 +221,9 @@ def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int
             (
                 own
                 for own in binds
-                if own.is_exclusive
+                if _is_learned(own)
                 and _excludes(own, returned)
-                and (own not in back or _is_learned(own))
+                and (own not in back or _is_plain(own))
             ),
             None,
         )
@@ -225,7 +234,28 @@ def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int
             binds[binds.index(newer)] = _replacing(newer, [returned])
     removed = [own for own in contents.binds if own not in binds]
     added = [own for own in binds if own not in remaining]
-    return _save(mapping, path, edited(contents, text, removed, added)), len(dropped)
+    text = edited(contents, text, removed, added)
+    if path.stem in shipped_mappings() and path.parent == user_folder():
+        shipped = load(path.stem)
+        if text.split() == as_toml(_new_contents(shipped)).split():  # nothing is left of the user
+            path.unlink(missing_ok=True)
+            return replace(shipped, mpe=mapping.mpe), len(dropped)
+    return _save(mapping, path, text), len(dropped)
+
+
+def others(mapping: Mapping, target: str, source: str) -> list[str]:
+    """The sources beside one that move a target."""
+    movers = dict.fromkeys(bind.source for bind in mapping.binds if bind.target == target)
+    return [other for other in movers if other != source]
+
+
+def added(before: Mapping, after: Mapping, target: str, source: str) -> str:
+    """What `learn` has changed, in a line: what was added, what stays and what is gone."""
+    words = [f"{source} added: {target}"]
+    if stay := others(after, target, source):
+        words.append(f"{', '.join(stay)} {'keep' if len(stay) > 1 else 'keeps'} it")
+    words += [f"{lost} no longer moves {of}" for lost, of in changes(before, after)]
+    return "; ".join(words)
 
 
 def changes(before: Mapping, after: Mapping) -> list[tuple[str, str]]:
@@ -236,29 +266,34 @@ def changes(before: Mapping, after: Mapping) -> list[tuple[str, str]]:
 
 
 def _excludes(learned: Bind, other: Bind) -> bool:
-    return override_key(learned) == override_key(other) or learned.target == other.target
+    is_of_target = learned.is_exclusive and learned.target == other.target
+    return is_of_target or override_key(learned) == override_key(other)
 
 
 def _replacing(bind: Bind, dropped: Iterable[Bind]) -> Bind:
     """A learned bind that keeps others: but not what the same target has learned before."""
     kept = list(bind.replaces)
     for other in dropped:
-        if not (other.target == bind.target and _is_learned(other)):
+        if not (other.target == bind.target and _is_plain(other)):
             kept.append(replace(other, replaces=()))
         kept += other.replaces
     return replace(bind, replaces=tuple(dict.fromkeys(kept)))
 
 
 def _is_learned(bind: Bind) -> bool:
+    """Whether `learn` made it, of before 1.0 too: that did not say so, and made all exclusive."""
+    return bind.is_learned or bind.is_exclusive
+
+
+def _is_plain(bind: Bind) -> bool:
     """Whether it is as `learn` makes it: its control can be moved again, nothing else is lost."""
-    return bind == replace(
+    return _is_learned(bind) and bind == replace(
         bind,
         curve=find(bind.target).curve,
         span=None,
         invert=False,
         smoothing_ms=0.0,
         channels=(),
-        is_exclusive=True,
     )
 
 
@@ -266,9 +301,14 @@ def _own_contents(mapping: Mapping, path: Path) -> tuple[MappingFile, str]:
     """Contents and text of the user's file; where there is none, of a new one with this base."""
     if path.exists():
         return read_mapping_file(path), text_of(path)
-    about = f"{mapping.about} With what you have taught it."
-    contents = MappingFile(mapping.name, base=mapping.files[0].stem, about=about)
+    contents = _new_contents(mapping)
     return contents, as_toml(contents)
+
+
+def _new_contents(mapping: Mapping) -> MappingFile:
+    """A file of the user's with a shipped mapping as its base, of which nothing is changed yet."""
+    about = f"{mapping.about} With what you have taught it."
+    return MappingFile(mapping.name, base=mapping.files[0].stem, about=about)
 
 
 def _save(mapping: Mapping, path: Path, text: str) -> Mapping:

@@ -188,6 +188,7 @@ def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
         input_range=table.read("input", read_input_range, (0.0, 1.0)),
         is_exclusive=table.read("alone", flag, False),
         is_global=table.read("global", flag, False),
+        is_learned=table.read("learned", flag, False),
         replaces=tuple(
             filter(None, (_bind(each, may_replace=False) for each in table.tables("replaces")))
         )

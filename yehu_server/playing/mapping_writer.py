@@ -32,6 +32,7 @@ def entries_of(bind: Bind) -> dict[str, Any]:
         "soft": bind.is_soft or None,
         "alone": bind.is_exclusive or None,
         "global": bind.is_global or None,
+        "learned": bind.is_learned or None,
         "replaces": [entries_of(each) for each in bind.replaces] or None,
     }
     return {name: value for name, value in entries.items() if value is not None}

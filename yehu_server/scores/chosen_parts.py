@@ -144,7 +144,7 @@ def midi_in_range(
         spans = [NoteSpan(n.start_s, n.end_s, (p,)) for n, p in zip(own, pitches, strict=True)]
         octaves = octaves_of(spans, REST_S, within)
         if octaves.summary:
-            parts.append((name, octaves.summary))
+            parts.append((name, octaves))
         for note, by in zip(own, octaves.of_notes, strict=True):
             if by and 0 <= note.key + 12 * by <= 127:
                 moves[note.begins] = 12 * by
@@ -158,7 +158,8 @@ def midi_in_range(
         event = events[number]
         message = transposed(event.message, by)
         events[number] = ScoreEvent(event.time_s, message, event.beat, event.track)
-    line = line_of([("" if len(by_part) == 1 else name, how) for name, how in parts], within)
+    is_one = len(by_part) == 1
+    line = line_of([("" if is_one else name, octaves) for name, octaves in parts], within)
     remarks = (*score.remarks, *filter(None, (line,)))
     return replace(score, events=tuple(events), remarks=remarks)
 

@@ -38,13 +38,24 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
     (learned,) = answers(still.peer.received(), "/learned")
     assert learned[:2] == ["/yehu/playing/vibrato", "cc 20"]
     assert learned[2].endswith("keyboard.toml")
+    assert learned[3:] == ["cc 77"]  # which keeps it
     assert still.services.changed == ["/"]
-    assert "cc 20 moves /playing/vibrato" in still.services.said[0]
+    assert "cc 20 added: /playing/vibrato; cc 77 keeps it" in still.services.said[0]
     turn(still, 20, 127)
     assert still.value("/playing/vibrato") == 100.0
     turn(still, 21, 0, 127)  # only one thing is learned
     assert still.player.mapping == load("keyboard", user_first=True)
     assert not still.player.mapping.of("cc 21")
+
+
+def test_others_lose_the_parameter_only_if_asked(still):
+    still.ask("/learn", "/playing/vibrato", 0, 1)
+    turn(still, 74, 10, 20, 64)
+    (learned,) = answers(still.peer.received(), "/learned")
+    gone = ["cc 74", "/yehu/playing/bow_position", "cc 77", "/yehu/playing/vibrato"]
+    assert learned[3] == ""
+    assert sorted(learned[4:]) == sorted(gone)
+    assert answers(still.ask("/learn", "/playing/vibrato", 0, 1, 0), "/error")
 
 
 def test_the_file_is_written_aside_so_that_a_slow_disk_holds_up_nothing(still, monkeypatch):

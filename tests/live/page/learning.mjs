@@ -2,7 +2,7 @@
  * Learns from streams of MIDI messages as the page does, and prints what it learned.
  *
  * The argument is the page's folder. Each line of the input is a stream: the name of a mapping, and
- * lessons: [target, whether it is soft, messages of port and bytes], or [target] to forget it. Each
+ * lessons: [target, whether it is soft and alone, messages of port and bytes], or [target] to forget it. Each
  * line of the output has the source that each lesson found, the binds at the end, and their file.
  */
 
@@ -13,7 +13,7 @@ import { resolve } from "node:path";
 const web = pathToFileURL(`${resolve(process.argv[2])}/`);
 const { default: facts } = await import(new URL("facts.js", web).href);
 const { Learner } = await import(new URL("playing/learner.js", web).href);
-const { bindOf, fileOf, merged, readLearned, withBind, withoutBind } = await import(
+const { bindOf, fileOf, merged, readLearned, withBind, withoutBinds } = await import(
   new URL("playing/learned.js", web).href
 );
 const { rowOf } = await import(new URL("playing/tables.js", web).href);
@@ -33,12 +33,12 @@ for await (const line of createInterface({ input: process.stdin })) {
   const mapping = facts.mappings[name];
   const sources = [];
   let learned = [];
-  for (const [target, isSoft, messages] of lessons) {
+  for (const [target, [isSoft, isAlone] = [], messages] of lessons) {
     const source = messages ? heard(messages) : null;
     sources.push(source);
-    if (source !== null) learned = withBind(learned, bindOf(target, source, isSoft));
-    const own = learned.find((bind) => bind.target === target);
-    if (!messages && own) learned = withoutBind(learned, own);
+    if (source !== null) learned = withBind(learned, bindOf(target, source, isSoft, isAlone));
+    const own = learned.filter((bind) => bind.target === target);
+    if (!messages) learned = withoutBinds(learned, own);
   }
   learned = readLearned(JSON.parse(JSON.stringify(learned))); // as a browser keeps them
   const binds = merged(mapping, learned).binds.map((bind) => {

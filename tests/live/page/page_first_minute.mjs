@@ -115,6 +115,25 @@ export default async function (browser, url) {
   await friend.waitForSelector("#guide:not([hidden])");
   await friend.close();
 
+  // What a link would hold is left out, and that is said where its reader looks.
+  const holding = await open(browser, link);
+  const other = await holding.page.evaluate(async () => {
+    const { linkOf, readLink } = await import("/link.js");
+    const { default: facts } = await import("/facts.js");
+    const brought = await readLink(location.hash);
+    const index = facts.parameters.findIndex(({ address }) => address === "/playing/vibrato");
+    const hold = { frame: 0, kind: facts.kinds.HOLD, index, value: 20, other: 0 };
+    return linkOf({ ...brought, commands: [hold, ...brought.commands] });
+  });
+  await holding.page.close();
+  const { page: reader } = await open(browser, other);
+  await reader.click("#listen");
+  const notice = reader.locator("#invite.left-out");
+  await notice.waitFor();
+  found.leftOut = await notice.textContent();
+  await notice.waitFor({ state: "hidden" });
+  await reader.close();
+
   // Somebody who touches the string while it plays goes on from there.
   const { page: third } = await open(browser, link);
   const hand = await fingersOf(third);

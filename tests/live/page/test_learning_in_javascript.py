@@ -57,7 +57,9 @@ def stream(chance: random.Random) -> dict[str, Any]:
     for _ in range(chance.randint(1, 8)):
         target = chance.choice(targets)
         forgets = chance.random() < 0.2
-        lesson = [] if forgets else [chance.random() < 0.5, messages(chance)]
+        lesson = (
+            [] if forgets else [[chance.random() < 0.5, chance.random() < 0.3], messages(chance)]
+        )
         lessons.append([target, *lesson])
     return {"name": chance.choice(shipped_mappings()), "lessons": lessons}
 
@@ -74,7 +76,8 @@ def expected(given: dict[str, Any], folder: Path) -> tuple[list[str | None], Map
             heard = (learner.hear(mido.Message.from_bytes(data), port) for port, data in rest[1])
             found = next((one for one in heard if one is not None), None)
         if found is not None:
-            mapping, _ = learn.learn(mapping, target, found, soft=rest[0])
+            soft, only = rest[0]
+            mapping, _ = learn.learn(mapping, target, found, soft=soft, only=only)
         sources.append(None if found is None else found.source)
     return sources, mapping, folder / "yehu-server" / "mappings" / f"{given['name']}.toml"
 

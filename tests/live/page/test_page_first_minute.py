@@ -46,6 +46,11 @@ def test_a_key_brings_help_and_takes_it_away(found) -> None:
     assert found["put"] == []
 
 
+def test_what_a_link_leaves_out_is_said_over_the_strings_while_it_plays(found):
+    line = "Notes and gestures are played, without these settings of it: "
+    assert found["leftOut"] == f"{line}Vibrato (How the player plays)"
+
+
 def test_a_link_asks_for_what_was_played_until_one_touches_the_string(found) -> None:
     played, replayed = (
         [command for command in found[name] if command[0] in ("BEGIN", "END", "SLIDE")]

@@ -25,7 +25,8 @@ def test_a_knob_that_moves_is_bound_over_the_whole_range_and_one_that_trembles_i
     assert found["waiting"] == "Vibrato: now move a control"
     assert found["trembled"] == []
     assert found["learned"]["list"] == ["CC 74 Vibrato"]
-    assert found["learned"]["word"] == "Vibrato: CC 74 moves it"
+    word = "Vibrato: CC 74 moves it; also CC 77, as before; no longer Bow position"
+    assert found["learned"]["word"] == word
     param = TABLE[VIBRATO]
     ((row, value),) = found["learned"]["written"]
     assert (row, value) == (VIBRATO, pytest.approx(param.curve.from_unit(30 / 127, 0.0, param.hi)))

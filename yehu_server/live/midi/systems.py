@@ -14,11 +14,12 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from yehu_server.errors import DeviceError, ParameterError
+from yehu_server.system import NAME
 
 CLIENT = "yehu-server MIDI"
 APIS = ("alsa", "jack", "core", "windows")
 # In the order in which they are tried.
-OF_PLATFORM = {"linux": ("alsa", "jack"), "darwin": ("core",), "win32": ("windows",)}
+OF_PLATFORM = {"linux": ("alsa", "jack"), "macos": ("core",), "windows": ("windows",)}
 
 Receive = Callable[[Sequence[int]], None]  # called with the bytes of a message, in another thread
 
@@ -43,7 +44,7 @@ class MidiSystem(Protocol):
 
 def systems() -> tuple[str, ...]:
     """The MIDI systems of this platform, as ``--midi-api`` names them."""
-    return OF_PLATFORM.get(sys.platform, ())
+    return OF_PLATFORM[NAME]
 
 
 def check_api(api: str | None) -> None:

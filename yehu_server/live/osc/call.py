@@ -53,13 +53,14 @@ class Request:
             raise RefusedError("expected one string")
         return self.arguments[0]
 
-    def word_and_flag(self) -> tuple[str, bool]:
-        """A string, and whether an optional number after it is not 0.
+    def word_and_flags(self, most: int) -> list[Any]:
+        """A string, and which of `most` optional numbers after it are not 0.
 
         Raises RefusedError where there is anything else.
         """
-        (flag,) = replace(self, arguments=self.arguments[1:] or [0]).numbers(1)
-        return replace(self, arguments=self.arguments[:1]).word(), flag != 0.0
+        word = replace(self, arguments=self.arguments[:1]).word()
+        given = replace(self, arguments=self.arguments[1:]).numbers(0, most)
+        return [word, *(number != 0.0 for number in given), *[False] * (most - len(given))]
 
 
 def _number(argument: Any) -> float:

@@ -29,39 +29,41 @@ class LearnCalls(GroupCalls):
 
     @osc_call(
         "/learn",
-        "Binds the controller that is moved next to a parameter; without one, ends learning.",
+        "Adds what is moved next to the controllers of a parameter; without one, ends learning.",
         ADDRESS,
     )
     def _learn(self, call: Request) -> None:
-        """``/learn [ADDRESS [SOFT]]``."""
+        """``/learn [ADDRESS [SOFT [ONLY]]]``."""
         self._player.learning.listen(None)
         if not call.arguments or list(call.arguments) == [None]:
             self._send(call.peer, "/learning", "")
             return
-        address, soft = call.word_and_flag()
+        address, soft, only = call.word_and_flags(2)
         target = self._target(address, "learn one")
         self._check_rate()
         until = time.monotonic() + PATIENCE_S
 
         def found(source: LearnedSource) -> None:
             if time.monotonic() <= until:
-                learned = partial(self._learned, call.peer, target, source, soft=soft)
+                learned = partial(self._learned, call.peer, target, source, soft, only)
                 self._write(call.peer, "/learn", learned)
 
         self._player.learning.listen(found)
         self._send(call.peer, "/learning", self._prefix + target)
 
     def _learned(
-        self, peer: Peer, target: str, source: LearnedSource, *, soft: bool
+        self, peer: Peer, target: str, found: LearnedSource, soft: bool, only: bool
     ) -> Callable[[], None]:
         before = self._player.mapping
-        mapping, path = learn.learn(before, target, source, soft=soft)
+        source = found.source
+        mapping, path = learn.learn(before, target, found, soft=soft, only=only)
+        kept = ", ".join(learn.others(mapping, target, source))
         lost = self._pairs(before, mapping)
 
         def take() -> None:
             self._take(mapping)
-            self._context.log(f"{source.source} moves {target} from now on ({path})")
-            self._send(peer, "/learned", self._prefix + target, source.source, str(path), *lost)
+            self._context.log(f"{learn.added(before, mapping, target, source)} ({path})")
+            self._send(peer, "/learned", self._prefix + target, source, str(path), kept, *lost)
 
         return take
 

@@ -13,6 +13,9 @@ from yehu_server.scores.written.mark_settings import harmonic_of
 from yehu_server.scores.written.notated import Grace, Note, Part, Written
 
 REST = 0.5  # quarters of silence between phrases
+FAR_UP = 2  # octaves, from which on a part is no longer a bass
+DEEPER_FIDDLE = "docs/ensemble.md"
+MOVED = "moved to fit"  # begins a line of moves
 
 
 def default_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
@@ -40,16 +43,19 @@ def moved(written: Written, plays: Sequence[int], within: NoteRange = YEHU) -> t
     for number in plays:
         parts[number], octaves = moved_part(parts[number], within)
         if octaves.summary:
-            moves.append((written.names[number], octaves.summary))
+            moves.append((written.names[number], octaves))
     return replace(written, parts=tuple(parts)), line_of(moves, within)
 
 
-def line_of(moves: Sequence[tuple[str, str]], within: NoteRange = YEHU) -> str:
-    """A line that names the parts that were moved, and their moves."""
+def line_of(moves: Sequence[tuple[str, Octaves]], within: NoteRange = YEHU) -> str:
+    """A line that names the parts that were moved, their moves, and where a deeper fiddle is."""
     if not moves:
         return ""
-    text = "; ".join(f"{name} {move}".lstrip() for name, move in moves)
-    return f"moved to fit {range_text(within)}: {text}"
+    text = "; ".join(f"{name} {octaves.summary}".lstrip() for name, octaves in moves)
+    low = [name for name, octaves in moves if octaves.whole >= FAR_UP]
+    names = ", ".join(filter(None, low)) or "it"
+    deeper = f" (a deeper fiddle for {names}: {DEEPER_FIDDLE})" if low else ""
+    return f"{MOVED} {range_text(within)}: {text}{deeper}"
 
 
 def span_of(note: Note, within: NoteRange = YEHU) -> NoteSpan:

@@ -1,0 +1,33 @@
+"""Presets of bowing are about as loud as each other, so that nobody reaches for the volume."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from loudness import lufs, true_peak_db
+
+import yehu_server as yehu
+
+# At 120 quarters a minute: of plucked notes, shorter ones are louder together.
+NAMES = ["G4", "A4", "B4", "D5", "E5", "D5", "B4", "A4", "G4", "C5", "E5", "G5"]
+LENGTHS = [0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 1.0]
+
+
+def phrase() -> list[yehu.Note]:
+    begins = np.cumsum([0.0, *LENGTHS])
+    notes = zip(NAMES, begins, LENGTHS, strict=False)
+    return [yehu.Note(name, at, length, velocity=80) for name, at, length in notes]
+
+
+def test_a_sine_is_as_loud_as_the_standard_says():
+    for rate in (44100.0, 48000.0):
+        sine = np.sin(2.0 * np.pi * 997.0 * np.arange(2 * rate) / rate)[:, None]
+        assert lufs(sine, rate) == pytest.approx(-3.01, abs=0.02)
+        assert lufs(np.repeat(0.1 * sine, 2, axis=1), rate) == pytest.approx(-20.0, abs=0.02)
+
+
+@pytest.mark.parametrize("preset", ["ordinary", "pizzicato", "sul-tasto", "tremolo"])
+def test_a_phrase_is_within_5_lu_of_loudness_with_each_preset(preset):
+    made = yehu.render(phrase(), preset=preset, phrasing=0.0)
+    assert -23.0 < lufs(made.sound, made.sample_rate) < -18.0
+    assert true_peak_db(made.sound) <= -0.9

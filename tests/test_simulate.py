@@ -155,10 +155,39 @@ def test_controls_are_straight_between_their_points_and_constant_outside():
     assert (arrays["bow_velocity"] == 0.25).all()
     assert (arrays["press_force"] == np.where(times < 0.002, 0.0, 0.5)).all()
     assert (arrays["bow_position"] == 0.255).all()  # the usual values
-    assert (arrays["finger_position"] == 0.1).all()
+    # A finger waits over the bridge until it presses.
+    assert (arrays["finger_position"] == np.where(times < 0.002, 0.3, 0.1)).all()
 
 
 # ---------------------------------------------------------------- pluck and hammer
+
+
+STRONG = {"bow_force": [[0, 0.0], [0.02, 2.5]], "bow_velocity": [[0, 0.0], [0.02, 0.9]]}
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_mirrored_bow_moves_the_string_the_other_way_to_the_last_bit(sign):
+    """Only a finger could tell up from down, and one without press is off the strings."""
+    bowed = {"bow_force": [[time, sign * force] for time, force in STRONG["bow_force"]]}
+    mirrored = {"bow_velocity": [[time, -speed] for time, speed in STRONG["bow_velocity"]]}
+    one, other = (
+        run({"duration": 0.3, "controls": STRONG | bowed | more}) for more in ({}, mirrored)
+    )
+    assert np.ptp(one["bridge_force"]) > 1.0
+    for name in ("bridge_force", "bridge_velocity", "friction_force", "relative_velocity"):
+        np.testing.assert_array_equal(one[name], -other[name])
+    assert not one["contact_force"].any()
+
+
+def test_a_finger_waits_over_the_bridge_but_while_it_presses_and_is_lifted():
+    press = [[0, 0.0], [0.1, 0.0], [0.1, 1.5], [0.2, 1.5], [0.2, 0.0]]
+    arrays = run({"duration": 0.4, "controls": STRONG | {"press_force": press}})
+    time, touched = arrays["time"], arrays["contact_force"].any(axis=1)
+    assert not touched[time < 0.1].any()
+    assert touched[(time > 0.12) & (time < 0.2)].mean() > 0.9
+    waits = arrays["finger_position"] == 0.3
+    assert not touched[waits].any()
+    np.testing.assert_array_equal(waits, (time < 0.1) | (time > 0.23997))
 
 
 def plucked(seconds: float = 1.0, **more) -> dict:

@@ -9,6 +9,8 @@ import pytest
 
 import yehu_server as yehu
 from yehu_server.cli import main
+from yehu_server.simulation.run import Simulation
+from yehu_server.simulation.run import simulate as run
 
 CONTROLS = {"bow_force": [[0.0, 0.0], [0.03, 0.7]], "bow_velocity": [[0.0, 0.0], [0.03, 0.3]]}
 GESTURE = {"duration": 0.2, "controls": CONTROLS}
@@ -47,6 +49,16 @@ def test_a_control_may_have_a_value_for_each_sample_or_an_array_of_points():
         for each in (points, np.array(points))
     ]
     np.testing.assert_array_equal(*(each.arrays["bow_force"] for each in runs))
+
+
+def test_a_run_whose_friction_was_not_solved_says_so(monkeypatch):
+    def unsolved(*arguments, **named):
+        found = run(*arguments, **named)
+        return Simulation(found.arrays, {**found.meta, "unconverged_solves": 3})
+
+    monkeypatch.setattr("yehu_server.api.simulated.run", unsolved)
+    with pytest.warns(RuntimeWarning, match="^3 unconverged solves, 0 lost states$"):
+        yehu.simulate({"duration": 0.01})
 
 
 def test_a_run_is_saved_by_any_path_and_reported_in_a_line(tmp_path):

@@ -16,11 +16,13 @@ from yehu_lab.regimes.columns import FINDING, UNBOWED
 from yehu_lab.regimes.judge import BOW, RELATIVE, SIGNALS, SOUND, judge_signals
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
+from yehu_server.core.controls.record import PARK_AFTER_S
 from yehu_server.core.engine.atomics import at
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics import refined as refined_kernel
 from yehu_server.core.physics.layout import (
     F_N,
+    FINGER_CONTROLS,
     MODEL,
     PRESSURE,
     REFINED,
@@ -184,6 +186,8 @@ def bow_stroke(
     curve_values = carray(values, (points,), np.float64)
     rows = carray(signals, (SIGNALS, room), np.float64)
     rate, place, force = m.rate, 0.0, 0.0
+    wait = int(PARK_AFTER_S * rate)
+    lifted = wait  # frames without press
     for column in range(columns):
         come[column] = begins[column]
     for begin in range(0, stroke.frames, BLOCK):
@@ -201,6 +205,9 @@ def bow_stroke(
             )
             place += controls[n, V_B] / rate
             controls[n, Y_B] = place
+            lifted = 0 if controls[n, FINGER_CONTROLS + 1] > 0.0 else lifted + 1
+            if lifted >= wait:  # as ``gesture.parked_frames``
+                controls[n, FINGER_CONTROLS] = m.bridge_x
         advance_by(kernel, model, state, more, block, at(block, PROBES_AT), 0, count)
         for n in range(count):
             rows[RELATIVE, begin + n] = probes[n, RELATIVE_VELOCITY]

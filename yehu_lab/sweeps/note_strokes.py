@@ -45,7 +45,6 @@ Array = Any
 FINGER_DOWN, HAIR_ON, HAIR_DOWN, BOW_MOVES = 0.01, 0.01, 0.02, 0.03
 LONGEST = 60.0  # s
 SLACK = 1.5  # by which a note may be lowered
-UNTOUCHED = 0.012  # m: where a lifted finger waits
 HANDS = control_curves_of(
     {
         F_N: [(HAIR_ON, 0.0), (HAIR_DOWN, 1.0)],
@@ -271,7 +270,8 @@ class NoteBow:
             tuned = self._tuned.calibration.tensions[string]
             quicker = math.sqrt(quantities.strings[string].T / tuned)
             if note == self._tuned.calibration.open_notes[string]:
-                place[i], press[i], frequency[i] = UNTOUCHED, 0.0, sounding * quicker
+                place[i], press[i] = quantities.bridge_x, 0.0
+                frequency[i] = sounding * quicker
                 continue
             shift = 2.0 ** (float(value["place"][i]) / 1200.0)
             bridge = quantities.bridge_x

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -13,7 +14,7 @@ from yehu_server.api.checks import PathLike, get_ready, number, path_of, whole
 from yehu_server.core.physics.time_loop import advance, advance_with_ledger
 from yehu_server.errors import ParameterError
 from yehu_server.scores.gesture import Gesture, gesture_from, read_gesture, sample_rate
-from yehu_server.simulation.run import Simulation
+from yehu_server.simulation.run import Simulation, faults_of
 from yehu_server.simulation.run import simulate as run
 
 __all__ = ["Simulation", "gesture_of", "plain_gesture", "simulate"]
@@ -55,6 +56,11 @@ def simulate(
     YehuError
         Where the gesture is wrong, or makes no stable model.
 
+    Warns
+    -----
+    RuntimeWarning
+        Where friction was not solved at some samples, or the state was lost.
+
     Examples
     --------
     >>> import numpy as np, yehu_server as yehu
@@ -68,7 +74,10 @@ def simulate(
     found = gesture_of(gesture)
     every = whole(strings_every, "strings_every", 0, 2**31)
     get_ready([advance_with_ledger if energy else advance])
-    return run(found, energy=bool(energy), strings_every=every, progress=progress)
+    done = run(found, energy=bool(energy), strings_every=every, progress=progress)
+    if faults := faults_of(done.meta):
+        warnings.warn(faults, RuntimeWarning, stacklevel=2)
+    return done
 
 
 def gesture_of(gesture: Mapping[str, Any] | PathLike | Gesture) -> Gesture:

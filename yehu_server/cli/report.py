@@ -18,7 +18,7 @@ from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.rendering.replay import Replayed
 from yehu_server.rendering.summary import PartSummary, Summary, counted
-from yehu_server.simulation.run import Simulation
+from yehu_server.simulation.run import Simulation, faults_of
 from yehu_server.util.hints import command_name
 
 if TYPE_CHECKING:
@@ -71,10 +71,8 @@ def simulate_report(target: Path, result: Simulation) -> str:
         flow = max(float(np.abs(arrays["power_in"]).max()), 1e-300)
         error = float(np.abs(arrays["energy_error"]).max())
         lines.append(f"energy error at most {error:.1e} W, {error / flow:.1e} of the power in")
-    if meta["unconverged_solves"] or meta["lost_states"]:
-        lines.append(
-            f"{meta['unconverged_solves']} unconverged solves, {meta['lost_states']} lost states"
-        )
+    if faults := faults_of(meta):
+        lines.append(faults)
     if meta["friction_bound"] >= NOTABLE_BOUND:
         lines.append(
             "note: at this sample rate and epsilon_0 the equation of friction may have several "

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.controls.record import PARK_AFTER_S
 from yehu_server.core.physics import layout
 from yehu_server.core.physics.grid import MIN_RATE
 from yehu_server.core.physics.quantities import Quantities, override
@@ -98,10 +99,23 @@ class Gesture:
             times, values = zip(*curve, strict=True)
             rows[:, control.column] = np.interp(time, times, values)
         rows[:, layout.Y_B] = np.cumsum(rows[:, layout.V_B]) / self.sample_rate
+        for at in range(layout.FINGER_CONTROLS, rows.shape[1], layout.CONTROLS_PER_FINGER):
+            parked = parked_frames(rows[:, at + 1], self.sample_rate)
+            rows[parked, at] = self.quantities.bridge_x
         if self.hammer:
             times, forces = zip(*self.hammer, strict=True)
             rows[:, layout.F_HAMMER] = np.interp(time, times, forces, left=0.0, right=0.0)
         return rows
+
+
+def parked_frames(press: Floats, rate: float) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Where a finger without press (N) waits over the bridge: a swinging string would touch it.
+
+    It is lifted where it was, and goes there as soon as a player's does.
+    """
+    frame, wait = np.arange(len(press)), int(PARK_AFTER_S * rate)
+    pressed = np.maximum.accumulate(np.where(press > 0.0, frame, -wait))
+    return frame - pressed >= wait
 
 
 def read_gesture(path: Path, instrument: Path | None = None) -> Gesture:

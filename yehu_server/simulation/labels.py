@@ -54,6 +54,7 @@ SIGNALS = {
     "energy_error": Label("W", "power that is missing"),
     "v_r_residual": Label("m s-1", "relative velocity of the solver less that of the grid"),
     "constraint_residual": Label("m", "strings less bridge"),
+    "friction_residual": Label("W", "power lost by friction less that of its law"),
     "strings_time": Label("s", "time of the strings' shapes"),
     "string_1": Label("m", "displacement of string 1"),
     "string_2": Label("m", "displacement of string 2"),

@@ -254,6 +254,12 @@ def metadata_of(
     }
 
 
+def faults_of(meta: Mapping[str, Any]) -> str:
+    """What went wrong in a run, by its metadata; empty where nothing did."""
+    unconverged, lost = meta["unconverged_solves"], meta["lost_states"]
+    return f"{unconverged} unconverged solves, {lost} lost states" if unconverged or lost else ""
+
+
 def shape_of(m: Any, motion: Any, string: int) -> Floats:
     """Displacement (m) of the nodes of string 0 or 1 now, from its end at the loop.
 

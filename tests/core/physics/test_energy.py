@@ -26,6 +26,7 @@ def balanced(run):
     assert run["loss_friction"].min() >= -1e-12 * max(1.0, run["loss_friction"].max())
     assert run["loss_finger"].min() >= -1e-8
     assert run["v_r_residual"].max() <= 1e-9
+    assert np.abs(run["friction_residual"]).max() <= 1e-9
     assert run["constraint_residual"].max() <= 1e-15
     for name in ("loss_strings", "loss_bridge", "loss_hair", "loss_bow_lift"):
         assert run[name].min() >= 0.0

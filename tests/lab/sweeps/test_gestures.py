@@ -54,6 +54,15 @@ def test_a_stroke_is_the_gesture_that_simulate_runs(vary):
     assert len(instruments.models) == len(instruments.rests)
 
 
+def test_an_open_string_tells_no_direction_of_a_mirrored_bow():
+    gesture = {"duration": 0.15, "controls": {"bow_velocity": [[0, 0.0], [0.02, 1.0]]}}
+    vary = {"bow_velocity": [0.8, -0.8], "bow_force": [0.7, 2.5], "bow_position": [0.235, 0.27]}
+    result = sweep(study_of({"gesture": gesture, "vary": vary}), workers=1)
+    for name in ("regime", "slips", "level_db", "brightness_hz"):
+        one, mirrored = result.grid(name)
+        np.testing.assert_array_equal(one, mirrored)
+
+
 def test_the_note_of_a_gesture_is_that_of_its_string_and_finger():
     varied = study(bow_force=[0.5, -0.5], finger_position=[0.1, 0.15])
     strokes = varied.bow.strokes(varied.axes, np.array([[0, 0], [0, 1], [1, 0], [1, 1]]))[1]

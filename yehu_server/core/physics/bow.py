@@ -17,6 +17,7 @@ from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Wor
 from yehu_server.core.physics.torsion import largest_yielding
 
 FRICTION_MARGIN = 4.0  # times mu_S F_N
+STEEPEST = 1.34  # times epsilon_0 k/2: how much friction falls at most as v_r grows
 
 
 def prepare_bow(model: np.void, quantities: Quantities) -> None:
@@ -51,7 +52,7 @@ def friction_bound(model: np.void, refined: np.void | None = None) -> float:
     k = model["k"]
     yielding = 0.0 if refined is None else largest_yielding(refined)
     mobility = (model["spread"].max() + model["C_h"] + yielding) / (2.0 * k)
-    return float(1.34 * mobility * model["epsilon_0"] * k / 2.0)
+    return float(STEEPEST * mobility * model["epsilon_0"] * k / 2.0)
 
 
 @compiled

@@ -1,14 +1,15 @@
 """The energy ledger: what is stored, what comes in, what is lost, and what is missing.
 
 [Yehu] eqs. (54)-(56), corrected as docs/physics.md says. The balance proves that forces
-and displacements belong together; it is blind to the friction law, to g and theta, and
-to convergence, which other tests hold.
+and displacements belong together; it is blind to the friction law and to convergence, which the
+residual of friction shows, and to g and theta, which other tests hold.
 """
 
 from __future__ import annotations
 
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.bow import contact_velocity
+from yehu_server.core.physics.friction import power_off_law
 from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import (
     BOW,
@@ -17,6 +18,7 @@ from yehu_server.core.physics.layout import (
     ENERGY_ERROR,
     F_HAMMER,
     F_N,
+    FRICTION_RESIDUAL,
     GHOST,
     LEVELS,
     LOSS_BOW_LIFT,
@@ -158,6 +160,11 @@ def record_energy(
     row[LOSS_HAIR], row[LOSS_FRICTION] = hair, friction
     row[LOSS_BOW_LIFT], row[LOSS_CONTACT_RESET] = lifted, reset
     row[ENERGY_ERROR] = (stored - before) / k - power + losses
-    row[V_R_RESIDUAL] = abs(v_r - s.v_r) if abs(control[F_N]) >= model.lift_force else 0.0
+    row[V_R_RESIDUAL], row[FRICTION_RESIDUAL] = 0.0, 0.0
+    if abs(control[F_N]) >= model.lift_force:
+        row[V_R_RESIDUAL] = abs(v_r - s.v_r)
+        row[FRICTION_RESIDUAL] = power_off_law(
+            model, c.string[BOW], w.F_N, w.mu_S, s.f_b, v_r, w.z_bar, w.r
+        )
     row[CONSTRAINT_RESIDUAL] = residual
     return stored

@@ -203,6 +203,22 @@ def eliminate_z_bar(
 
 
 @compiled
+def power_off_law(
+    m: Model, string: int, F_N: float, mu_S: float, f_b: float, v_r: float, z_bar: float, r: float
+) -> float:
+    """Return how much more friction takes than its law says at v_r (W).
+
+    The power f_b v_r - epsilon_0 z_bar r, less that with the law's f_b and r: zero but for
+    rounding where the friction of the step is solved.
+    """
+    z_ba = m.xi[string] * m.mu_C * F_N / m.epsilon_0
+    residual = bristle_residual(v_r, (z_bar, 0.0), (r, 0.0), z_ba, F_N / m.epsilon_0, mu_S, m)[0]
+    lost = one_minus_inverse_root((v_r * m.epsilon_1 / (m.mu_C * F_N)) ** 2)
+    law = m.epsilon_0 * z_bar + m.epsilon_1 * (1.0 - lost) * (r + residual)
+    return float((f_b - law) * v_r + m.epsilon_0 * z_bar * residual)
+
+
+@compiled
 def solve_friction(
     free: float,
     mobility: float,

@@ -38,6 +38,21 @@ def prepare_friction(refined: Any, quantities: Quantities) -> None:
 
 
 @compiled
+def curve_force(m: Model, F_N: float, f_b: float, v_r: float) -> float:
+    """Return the friction force (N) of the curve: `f_b`, within its bound, where the string sticks.
+
+    Parameters
+    ----------
+    v_r : float, m/s
+        As solved: exactly zero where the string sticks.
+    """
+    if v_r == 0.0:
+        return max(-m.mu_S * F_N, min(f_b, m.mu_S * F_N))
+    mu = m.mu_C + (m.mu_S - m.mu_C) * m.v_s / (m.v_s + abs(v_r))
+    return math.copysign(mu * F_N, v_r)
+
+
+@compiled
 def solve_curve(
     free: float, mobility: float, F_N: float, v_before: float, m: Model
 ) -> tuple[float, float]:

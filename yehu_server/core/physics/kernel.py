@@ -304,7 +304,7 @@ def solve_contacts(
         w.f_c[i] += w.f_c_per_newton[i] * f_b
     back_substitute_fingers(m, s, c, w, next_, near, f_b)
 
-    w.z_bar, w.r = 0.0, 0.0
+    w.z_bar, w.r, w.F_N, w.mu_S = 0.0, 0.0, F_N, mu_S
     if bowed:  # z is then at n + 1/2
         w.z_bar, w.r = z_bar, m.rate * 2.0 * (z_bar - s.z[string])
         s.z[string] = 2.0 * z_bar - s.z[string]

@@ -237,6 +237,8 @@ WORK = lined_up(
         ("bridge_travel", np.float64),
         ("z_bar", np.float64),
         ("r", np.float64),
+        ("F_N", np.float64),
+        ("mu_S", np.float64),
         ("iterations", np.int64),
         ("dropped_z", np.float64),
         ("dropped_Psi", np.float64),
@@ -288,6 +290,11 @@ REFINED = lined_up(
         ("responses", np.float64, (MAX_POINTS, 2 * STRINGS)),
         ("free", np.float64, MAX_POINTS),
         ("mobility", np.float64, (MAX_POINTS, MAX_POINTS)),
+        ("stiffness", np.float64, (MAX_POINTS, MAX_POINTS)),
+        ("newton", np.float64, (MAX_POINTS, MAX_POINTS + 1)),
+        ("v_kept", np.float64, MAX_POINTS),
+        ("slope", np.float64, MAX_POINTS),
+        ("mu_S", np.float64, MAX_POINTS),
         ("z_bar", np.float64, MAX_POINTS),
         ("r", np.float64, MAX_POINTS),
         ("skin_drag", np.float64, STRINGS),
@@ -334,7 +341,7 @@ def padded_length(count: int) -> int:
     return int((np.int64(count) + VECTOR - 1) & -VECTOR)
 
 
-# Columns of the energy ledger, by name and by number: J, then W, then two residuals (m/s and m).
+# Columns of the energy ledger, by name and by number: J, then W, then residuals (m/s, m and W).
 LEDGER = (
     "energy",
     "power_in",
@@ -348,6 +355,7 @@ LEDGER = (
     "energy_error",
     "v_r_residual",
     "constraint_residual",
+    "friction_residual",
 )
 (
     ENERGY,
@@ -362,4 +370,5 @@ LEDGER = (
     ENERGY_ERROR,
     V_R_RESIDUAL,
     CONSTRAINT_RESIDUAL,
+    FRICTION_RESIDUAL,
 ) = range(len(LEDGER))

@@ -45,6 +45,7 @@ from yehu_server.core.physics.hair_width import (
     hair_loss,
     lift_points,
     place_points,
+    point_power_off_law,
     point_velocity,
     prepare_width,
     solve_points,
@@ -56,6 +57,7 @@ from yehu_server.core.physics.layout import (
     ENERGY_ERROR,
     F_HAMMER,
     F_N,
+    FRICTION_RESIDUAL,
     ITERATIONS,
     LEVELS,
     LOSS_FINGER,
@@ -183,7 +185,7 @@ def step(
     if near > 0:
         eliminate_fingers(m, state, t, u_next, next_, near, bowed, control[F_N])
     F_N_now = abs(control[F_N]) * grip(m, s, c, control, now)
-    w.iterations, s.f_b, s.v_r = 0, 0.0, 0.0
+    w.F_N, w.iterations, s.f_b, s.v_r = F_N_now, 0, 0.0, 0.0
     for e in range(t.points if not bowed else 0):
         t.f_b[e], t.v_r[e] = 0.0, t.free[e]
     if bowed:
@@ -294,7 +296,7 @@ def record_points(
     s, c = state.motion, state.contacts
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     stored = stored_energy(m, t, next_, now)
-    strings, finger, friction, residual = 0.0, 0.0, 0.0, 0.0
+    strings, finger, friction, residual, off_law = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(STRINGS):
         strings += torsion_loss(m, t, i, next_, prev)
         finger += skin_loss(m, t, i, next_)
@@ -303,11 +305,13 @@ def record_points(
         if abs(control[F_N]) >= m.lift_force:
             friction += t.share * (t.f_b[e] * v_r - m.epsilon_0 * t.z_bar[e] * t.r[e])
             residual = max(residual, abs(v_r - t.v_r[e]))
+            off_law += t.share * point_power_off_law(m, c, t, e, state.work.F_N, v_r)
     hair = hair_loss(m, t, next_, prev)
     losses = strings + finger + hair + friction - row[LOSS_FRICTION]
     row[ENERGY_ERROR] += (stored - before) * m.rate + losses
     row[ENERGY] += stored
     row[LOSS_STRINGS] += strings
     row[LOSS_FINGER] += finger
-    row[LOSS_HAIR], row[LOSS_FRICTION], row[V_R_RESIDUAL] = hair, friction, residual
+    row[LOSS_HAIR], row[LOSS_FRICTION] = hair, friction
+    row[V_R_RESIDUAL], row[FRICTION_RESIDUAL] = residual, off_law
     return stored

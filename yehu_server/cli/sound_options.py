@@ -46,7 +46,7 @@ def add_room(group: Any) -> None:
     add_options(
         group,
         """
-        --dry: no room, and a body that sounds alike to both sides (default: a small, quiet room)
+        --dry: no room, and a body that sounds alike to both sides (default: a chamber)
         --mono: write one channel, the mean of both
         --room NAME: the room: a preset of rooms, such as hall, or a file
         """,

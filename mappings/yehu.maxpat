@@ -13093,7 +13093,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 5"
+     "text": "loadmess set 7"
     }
    },
    {
@@ -13262,7 +13262,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.4"
+     "text": "loadmess set 0.7"
     }
    },
    {
@@ -13431,7 +13431,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.4"
+     "text": "loadmess set 0.2"
     }
    },
    {
@@ -13600,7 +13600,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.15"
+     "text": "loadmess set 0.45"
     }
    },
    {
@@ -13763,13 +13763,13 @@
      "patching_rect": [
       16.0,
       6366,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 2"
+     "text": "loadmess set 3.5"
     }
    },
    {
@@ -13779,7 +13779,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       6366,
       203,
       22
@@ -13797,7 +13797,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      379.0,
+      393.0,
       6366,
       98,
       22

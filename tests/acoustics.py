@@ -23,12 +23,42 @@ def energy_left(response: Any) -> Any:
     return np.cumsum(power[::-1])[::-1]
 
 
+def from_first_sound(response: Any) -> Any:
+    """The response from its first sound on: 20 dB below the highest peak [ISO3382]."""
+    power = np.sum(np.square(response), axis=1)
+    return response[int(np.argmax(power > 1e-2 * power.max())) :]
+
+
 def clarity_db(response: Any, rate: float) -> float:
     """C80: energy of the first 80 ms from the first sound on, over all that follows (dB)."""
-    power = np.sum(np.square(response), axis=1)
-    first = int(np.argmax(power > 1e-4 * power.max()))
-    early, late = np.split(power[first:], [round(0.08 * rate)])
+    power = np.sum(np.square(from_first_sound(response)), axis=1)
+    early, late = np.split(power, [round(0.08 * rate)])
     return float(10.0 * np.log10(early.sum() / late.sum()))
+
+
+def early_decay_time(response: Any, rate: float) -> float:
+    """EDT: the time of a decay by 60 dB (s), by the first 10 dB [ISO3382]."""
+    return -60.0 / decay_line(from_first_sound(response), rate, 0.0, -10.0)[0]
+
+
+def early_correlation(response: Any, rate: float) -> float:
+    """IACC of the first 80 ms: the highest correlation of both ears within 1 ms [ISO3382]."""
+    left, right = from_first_sound(response)[: round(0.08 * rate)].T
+    within = round(1e-3 * rate)
+    middle = len(left) - 1
+    products = scipy.signal.correlate(left, right)[middle - within : middle + within + 1]
+    energies = np.sum(np.square(left)) * np.sum(np.square(right))
+    return float(np.max(np.abs(products)) / np.sqrt(energies))
+
+
+def octaves_from(response: Any, rate: float, centres: tuple[float, ...]) -> list[Any]:
+    """Octave bands of a response, filtered forward only: nothing sounds before it."""
+    bands = []
+    for centre in centres:
+        edges = centre / np.sqrt(2.0), centre * np.sqrt(2.0)
+        sections = scipy.signal.butter(3, edges, "bandpass", fs=rate, output="sos")
+        bands.append(scipy.signal.sosfilt(sections, response, axis=0))
+    return bands
 
 
 def decay_line(response: Any, rate: float, from_db: float, to_db: float) -> tuple[float, float]:

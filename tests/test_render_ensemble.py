@@ -89,7 +89,7 @@ def test_the_report_has_a_line_for_each_part(command, trio, tmp_path):
     code, out, _ = command("render", trio, "-o", tmp_path / "out.wav", "--ensemble")
     assert code == 0
     lines = out.splitlines()
-    assert lines[2] == "channel 2: 4 notes, middle, 2.0 m"
+    assert lines[2] == "channel 2: 4 notes, middle, 3.5 m"
     assert lines[3].startswith("channel 5: 4 notes, ")
     assert lines[4] == "channel 10 is percussion: 4 notes not played; --channel 10 plays them"
 
@@ -228,7 +228,7 @@ def test_an_ensemble_file_says_who_plays_what_where_and_on_which_instrument(play
     told = [low[name] for name in ("name", "pan", "distance_m", "gain_db", "seed", "mapping")]
     assert told == ["low / inner", -0.25, 3.0, -3.0, 5, "wide"]
     assert low["preset"].endswith("pizzicato.toml")
-    assert (other["name"], other["seed"], other["distance_m"]) == ("channel 5", 1, 2.0)
+    assert (other["name"], other["seed"], other["distance_m"]) == ("channel 5", 1, 3.5)
     assert Path(summary["stems"][0]).name == "01-low---inner.wav"
 
 

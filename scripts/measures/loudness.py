@@ -20,7 +20,7 @@ EVEN_DB = 2.0
 STRUCK = (1, 20, 50, 80, 110, 127)
 SOFT, MEDIUM, HARD = STRUCK.index(20), STRUCK.index(80), STRUCK.index(127)
 MIN_RISE_DB, MAX_RISE_DB, MIN_ABOVE_DB = 16.0, 24.0, 3.0
-BRIGHTER = 1.25  # the centroid of a hard note, as a factor on that of a soft one
+BRIGHTER = 1.1  # the centroid of a hard note, as a factor on that of a soft one
 LIMITER = 10.0 ** (find("/output/limiter").default / 20.0)  # amplitude above which it acts
 
 

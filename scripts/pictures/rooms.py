@@ -18,7 +18,7 @@ acoustics: Any = import_module("acoustics")
 stages: Any = import_module("stages")
 
 RATE = 48000.0
-NAMES = ("study", "courtyard", "hall")
+NAMES = ("study", "chamber", "courtyard", "hall")
 BANDS = ((250.0, "#1f5fa8"), (1000.0, "0.4"), (4000.0, "#c03a2b"))
 
 
@@ -30,7 +30,7 @@ def heard(name: str) -> tuple[dict[str, float], Any, Any]:
 
 
 def draw_all(figures: Path, _sounds: Path) -> None:
-    figure, rows = plt.subplots(len(NAMES), 3, figsize=(12.0, 8.0), layout="constrained")
+    figure, rows = plt.subplots(len(NAMES), 3, figsize=(12.0, 10.5), layout="constrained")
     for axes, name in zip(rows, NAMES, strict=True):
         asked, direct, room = heard(name)
         at = np.arange(len(room)) / RATE

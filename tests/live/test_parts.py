@@ -235,7 +235,7 @@ def test_a_preset_is_loaded_by_a_part_and_leaves_what_all_share(still, players, 
     expected = "/room/size: one for all parts, left out; /yehu/preset/load sets what all share"
     assert errors(heard) == [expected]
     assert values(players) == [1.0, 0.5, 1.0]
-    assert [player.value("/room/size") for player in players] == [5.0] * 3
+    assert [player.value("/room/size") for player in players] == [7.0] * 3
     assert not {*players[1].sound()} & {*SHARED}
     assert {*SHARED} < {*players[0].sound()}
     for first in ("", "/part/1"):

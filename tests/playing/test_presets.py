@@ -232,7 +232,7 @@ def test_a_preset_of_ones_own_hides_a_shipped_one_until_it_is_deleted(presets, p
 def test_a_name_that_there_is_not_lists_those_there_are(presets):
     for call in (presets.load, presets.find):
         with pytest.raises(
-            PresetError, match=r"no preset 'x' \(there are: courtyard, dry, flautando"
+            PresetError, match=r"no preset 'x' \(there are: chamber, courtyard, dry, flau"
         ):
             call("x")
     with pytest.raises(PresetError, match="no preset 'x'"):

@@ -11,7 +11,7 @@ import { sourceName } from "./learn.js";
 import { makeSliders, nameFor } from "./slider.js";
 
 /** Presets that the page begins with; a server has a sound of its own. */
-export const AT_FIRST = isServed ? [] : ["vibrato", "courtyard"];
+export const AT_FIRST = isServed ? [] : ["vibrato", "chamber"];
 /** Of the room, and of where in it the player is. */
 const ROOM = [
   ...["level", "size", "decay", "damping", "distance", "pan"].map((name) => `/room/${name}`),

@@ -46,7 +46,7 @@ def add_room(group: Any) -> None:
     add_options(
         group,
         """
-        --dry: no room, and the same sound on both sides (default: a small, quiet room)
+        --dry: no room, and the same sound on both sides (default: a chamber)
         --mono: write one channel, the mean of left and right
         --room NAME: the room: one of the presets of rooms, such as hall, or a file
         """,

@@ -13,6 +13,7 @@ from yehu_server.core.physics.layout import (
     F_N,
     F_PLUCK,
     FINGER_CONTROLS,
+    TEXTURE,
     V_B,
     X_B,
     X_PLUCK,
@@ -121,6 +122,17 @@ def test_bow_force_is_the_asked_share_of_schellengs_limit(instrument, side, stri
     # A slow bow: fast ones are given a little more.
     assert row[F_N] == pytest.approx(side * 0.5 * schelleng(string, 0.02, 0.1), rel=0.01)
     assert row[V_B] == speed
+
+
+@pytest.mark.parametrize(("effort", "share"), [(0.0, 1.0), (0.03, 1.0), (0.09, 0.5), (0.45, 0.1)])
+@pytest.mark.parametrize(("side", "string"), [(1.0, 0), (-1.0, 1)])
+def test_hair_is_the_less_uneven_the_more_a_bow_presses_beyond_a_soft_one(
+    instrument, side, string, effort, share
+):
+    # 0.045 m/s: speed times share of Schelleng's limit.
+    put(instrument, bow_side=side, bow_speed=0.1, bow_position=0.1, bow_noise=0.04)
+    put(instrument, bow_assist=0.0, bow_force=schelleng(string, effort, 0.1))
+    assert controls(instrument)[TEXTURE] == pytest.approx(0.04 * share, rel=0.01)
 
 
 def test_the_bow_moves_smoothly_when_a_finger_lands(instrument):

@@ -29,7 +29,7 @@ def test_both_sides_sum_to_the_measured_sound(rate):
     rng = np.random.default_rng(4)
     dry = SMALL * rng.normal(size=round(rate))
     stage = Stage(rate)
-    asked = {"width": 1.0, "level": 0.0}
+    asked = {"width": 1.0, "level": 0.0, "distance": 2.0}
     stage.settle(0.1, **asked)
     out = stage.play(dry, stage_inputs(len(dry), **asked))[0].astype(np.float64)
     for fraction in (1, 12):

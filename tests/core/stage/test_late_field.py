@@ -12,12 +12,14 @@ from acoustics import (
 )
 from rooms import Asked, Room
 
-STUDY, COURTYARD, HALL = Asked(5.0, 0.4, 0.4), Asked(14.0, 0.8, 0.6), Asked(25.0, 1.6, 0.35)
-PRESETS = {"study": STUDY, "courtyard": COURTYARD, "hall": HALL}
+STUDY, CHAMBER = Asked(5.0, 0.4, 0.4), Asked(7.0, 0.7, 0.2)
+COURTYARD, HALL = Asked(14.0, 0.8, 0.6), Asked(25.0, 1.6, 0.35)
+PRESETS = {"study": STUDY, "chamber": CHAMBER, "courtyard": COURTYARD, "hall": HALL}
 SOUND = 343.0
 ROOMS = [
     (STUDY, 44100.0),
     (STUDY, 96000.0),
+    (CHAMBER, 44100.0),
     (COURTYARD, 48000.0),
     (HALL, 48000.0),
     (Asked(3.0, 0.25, 0.3), 48000.0),
@@ -84,7 +86,7 @@ def test_a_network_without_loss_keeps_its_energy():
 # By when a field is as dense as nature's: 4000 echoes a second, by Kuttruff's formula.
 @pytest.mark.parametrize("rate", [44100.0, 96000.0])
 @pytest.mark.parametrize(("name", "begins_s", "full_s"), [
-    ("study", 0.06, 0.1), ("courtyard", 0.15, 0.2), ("hall", 0.25, 0.3),
+    ("study", 0.06, 0.1), ("chamber", 0.06, 0.1), ("courtyard", 0.15, 0.2), ("hall", 0.25, 0.3),
 ])  # fmt: skip
 def test_echoes_grow_dense_and_stay_so(name, begins_s, full_s, rate):
     heard = responses(PRESETS[name], rate)

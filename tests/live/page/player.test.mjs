@@ -146,7 +146,7 @@ test("a touch is heard within 100 ms: what comes to it is the browser's own late
     const kernel = new Kernel(new WebAssembly.Module(module), RATE, 128, facts.snapshotLength);
     const post = (frame, ...command) => kernel.post(frame ?? NOW, ...command);
     const { player } = await playing({ post });
-    for (const preset of ["vibrato", "courtyard"]) player.applyPreset(preset); // as the page begins
+    for (const preset of ["vibrato", "chamber"]) player.applyPreset(preset); // as the page begins
     player.fingerOn("hand", pitch, 0.63);
     let ms = 0;
     for (; ms < 1000 && kernel.out.every((one) => Math.abs(one) < 1e-3); ms += 128e3 / RATE) {

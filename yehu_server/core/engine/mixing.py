@@ -27,7 +27,7 @@ from yehu_server.core.engine.rig import METERS_AT, RIG_BYTES, SEAT_AT, count_par
 from yehu_server.core.engine.telemetry import METERS, TELEMETRY_S
 from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
-from yehu_server.core.stage.image_sources import EARS
+from yehu_server.core.stage.image_sources import EARS, REFERENCE_DISTANCE_M
 from yehu_server.core.stage.late_field import CHECK_FRAMES, is_settled, reverberate, set_room
 from yehu_server.core.stage.record import (
     BUSES,
@@ -48,8 +48,12 @@ from yehu_server.core.stage.seat import (
     set_reflections,
     update_silence,
 )
+from yehu_server.params.table import find
 
 Array = Any
+
+# Without a room, whose sound adds to the direct one, the instrument is itself where players sit.
+DRY_DISTANCE_M = find("/room/distance").default
 
 
 @native
@@ -116,11 +120,12 @@ def take_up(rigs: Any, sounded: Any, apart: int, part: int, first: int, frames: 
     shared = carray(sounded, (1,), SOUNDED)[0]
     o = record_at(sounded, part * apart, SOUNDED)
     s = record_at(rigs, part * RIG_BYTES + SEAT_AT, SEAT)
+    full_at = REFERENCE_DISTANCE_M if stage.has_room != 0 else DRY_DISTANCE_M
     for n in range(frames):
         own, room_inputs = o.stage_inputs[n], shared.stage_inputs[n]
         is_time = (first + n) % CHECK_FRAMES == 0
         if is_time or math.isnan(s.direct[LEFT]):  # or has begun anew, wherever the block begins
-            set_direct(s, own[DISTANCE_NOW], own[PAN_NOW], CHECK_FRAMES)
+            set_direct(s, own[DISTANCE_NOW], own[PAN_NOW], full_at, CHECK_FRAMES)
         if is_time and stage.has_room != 0:
             set_reflections(
                 s,

@@ -28,13 +28,12 @@ from yehu_server.core.player.parameter_indices import (
 from yehu_server.params.table import find
 
 # The bow whose sound is the model's own: speed times share of Schelleng's limit (m/s), and place.
-PLAIN_EFFORT, PLAIN_PLACE = 0.046, 0.13
+PLAIN_EFFORT, PLAIN_PLACE = 0.026, 0.13
 USUAL_EFFORT = find("/playing/speed").default * find("/playing/pressure").default
 USUAL_PLACE = find("/playing/bow_position").default
 # Octaves of the centroid for each doubling of the effort, and for each halving of the distance
-# from the bridge. Strokes from pianissimo to fortissimo double the effort about one and a half
-# times: 1.5, a little more than in recordings of a cello (1.3).
-HARDER, NEARER = 0.4, 0.6
+# from the bridge. From soft to loud that is 0.2 octaves for 10 dB, in recordings of a cello 0.14.
+HARDER, NEARER = 0.2, 0.6
 # A frequency that falls slowly does not raise what still rings of a higher note.
 LOWERING_MS = 90.0
 

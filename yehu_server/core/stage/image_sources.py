@@ -26,7 +26,7 @@ MAX_LISTENER_HEIGHT_RATIO, MAX_PLAYER_HEIGHT_RATIO = 0.45, 0.3
 MIN_WALL_GAP_M = 0.3  # from a player to a wall
 EAR_X_M = 0.085  # from the middle of the head
 MAX_AZIMUTH = math.pi / 4.0  # direction of a player at pan 1, to the right of straight ahead
-REFERENCE_DISTANCE_M = 2.0  # a player at this distance is as loud as without a room
+REFERENCE_DISTANCE_M = 2.0  # the direct sound of a player there is as loud as the instrument
 EAR_DIRECTIVITY = 0.7  # how much more an ear receives from its own side
 SABINE = 0.161  # s/m
 

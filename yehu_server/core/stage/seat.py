@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.stage import absorption, image_sources
 from yehu_server.core.stage.directivity import SIDES, clear_sides, prepare_sides, reset_sides
-from yehu_server.core.stage.image_sources import EARS, REFERENCE_DISTANCE_M, WALLS
+from yehu_server.core.stage.image_sources import EARS, WALLS
 from yehu_server.core.stage.late_field import CLOSE_S
 
 HISTORY_FRAMES = 1 << 16  # frames of sound that are kept for reflections
@@ -84,10 +84,13 @@ def pan_to(ear: int, pan: float) -> float:
 
 
 @compiled_exactly
-def set_direct(s: Any, distance: float, pan: float, frames: int) -> None:
-    """Move the direct sound to a distance (m) and direction within some frames, from now."""
+def set_direct(s: Any, distance: float, pan: float, full_at: float, frames: int) -> None:
+    """Move the direct sound to a distance (m) and direction within some frames, from now.
+
+    At the distance `full_at` (m) it is as loud as the instrument.
+    """
     for ear in range(EARS):
-        requested = pan_to(ear, pan) * REFERENCE_DISTANCE_M / distance
+        requested = pan_to(ear, pan) * full_at / distance
         s.send[ear] = pan_to(ear, pan)
         if math.isnan(s.direct[ear]):
             s.direct[ear] = requested

@@ -1,0 +1,40 @@
+"""What differs between systems stands in one package, and its forms for other systems fit."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from llvmlite import binding, ir
+
+from yehu_server.system import clocks
+
+ROOT = Path(__file__).parents[1]
+ASKS = re.compile(
+    r"\bsys\.platform\b|\bos\.name\b|\bplatform\.system\b|hasattr\((?:os|signal|socket)\b"
+    r"|import (?:fcntl|resource|msvcrt|readline)\b|\bos\.(?:getuid|nice|memfd_create)\b"
+    r"|\bctypes\.(?:WinDLL|windll)\b"
+)
+
+
+def test_no_other_module_asks_which_system_it_is_on():
+    found = [
+        f"{file.relative_to(ROOT)}: {line.strip()}"
+        for package in ("yehu_server", "yehu_lab")
+        for file in sorted((ROOT / package).rglob("*.py"))
+        if "system" not in file.relative_to(ROOT / package).parts[:1]
+        for line in file.read_text("utf-8").splitlines()
+        if ASKS.search(line)
+    ]
+    assert found == []
+
+
+@pytest.mark.parametrize("read", [clocks._counter, clocks._thread_times, clocks.monotonic_code])
+def test_clocks_of_every_system_are_code_that_llvm_takes(read: Any):
+    module = ir.Module("clocks")
+    function = ir.Function(module, ir.FunctionType(ir.IntType(64), []), "now")
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    builder.ret(read(builder))
+    binding.parse_assembly(str(module)).verify()

@@ -62,7 +62,7 @@ def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
     path.write_text(
         '[[bind]]\nsource = "nrpn 2/44"\ntarget = "/playing/attack"\nspan = [200, 10]\n'
         "curve = [[0, 0], [1, 0.5]]\ninvert = true\nsmoothing = 50\nchannel = [3, 2]\nsoft = true\n"
-        "global = true\n"
+        "global = true\nlearned = true\n"
         '[[bind]]\nsource = "/f"\ntarget = "/playing/volume"\ninput = [0, 127]\n'
     )
     table = mappings("show", path)[1]
@@ -82,6 +82,7 @@ def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
         "soft": True,
         "alone": False,
         "global": True,
+        "learned": True,
         "input": None,
         "replaces": None,
     }

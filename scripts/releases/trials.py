@@ -54,13 +54,14 @@ def _pyenv() -> Path:
 
 def _usable(version: str) -> Callable[[str], str | None]:
     def path_of(program: str) -> str | None:
-        code = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"
+        code = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2], sys.executable)"
         with contextlib.suppress(OSError):
             done = subprocess.run(  # noqa: S603 - our own
                 [program, "-c", code], capture_output=True, text=True, check=False
             )
-            if done.stdout.strip() == version:
-                return program
+            of, _, path = done.stdout.strip().partition(" ")
+            if of == version:
+                return path
         return None
 
     return path_of
@@ -75,15 +76,23 @@ class Installation:
         self.python, self.command = programs / "python", programs / "yehu-server"
         home = folder / "home"
         home.mkdir(parents=True)
-        kept = ("SYSTEMROOT", "TEMP", "LANG", "PIP_CONFIG_FILE", "PIP_INDEX_URL")
-        self.environment = {name: os.environ[name] for name in kept if name in os.environ}
-        # No compiler, no git, and the caches of nobody.
-        self.environment |= {"PATH": str(programs), "HOME": str(home), "USERPROFILE": str(home)}
+        # No compiler and no git; pip alone has its user's settings, for its indexes.
+        self.environment = {**os.environ, "PATH": str(programs)}
         self.run(python, "-m", "venv", str(folder / "env"))
         began = time.monotonic()
         options = ("--quiet", "--disable-pip-version-check", "--only-binary=:all:")
         self.run(self.python, "-m", "pip", "install", *options, str(wheel))
         self.installed_s = time.monotonic() - began
+        kept = {
+            name: os.environ[name] for name in ("SYSTEMROOT", "TEMP", "LANG") if name in os.environ
+        }
+        # And from here on the settings and caches of nobody.
+        self.environment = {
+            **kept,
+            "PATH": str(programs),
+            "HOME": str(home),
+            "USERPROFILE": str(home),
+        }
 
     def run(self, *words: str | Path) -> str:
         """Run a command in the environment and return what it printed; raises TrialError."""
@@ -102,11 +111,14 @@ class Installation:
 
 def render(there: Installation) -> str:
     """The first render, with an empty cache."""
-    began = time.monotonic()
+    began, before = time.monotonic(), os.times()
     there.run(there.command, "render", score_of(there), "-o", "first.wav")
-    took = time.monotonic() - began
+    took, after = time.monotonic() - began, os.times()
+    # Of the processors, which tells more beside other work; Windows does not say.
+    computed = sum(after[2:4]) - sum(before[2:4])
     _heard(there.folder / "first.wav")
-    return f"{took:.1f} s" + ("" if took <= RENDER_S else f" (more than {RENDER_S:g})")
+    late = "" if took <= RENDER_S else f", more than {RENDER_S:g}"
+    return f"{took:.1f} s, {computed:.1f} s of processor time{late}"
 
 
 def score_of(there: Installation) -> str:
@@ -247,7 +259,7 @@ def try_wheel(wheel: Path, version: str, python: str | None) -> dict[str, str]:
 def main(words: Sequence[str]) -> int:
     """Try a wheel under the named Pythons, or all that are here; return the exit code."""
     wheel, *named = words
-    chosen = {each: each for each in named} or pythons()
+    chosen = {each: shutil.which(each) for each in named} or pythons()
     failed = False
     for version, python in chosen.items():
         for what, found in try_wheel(Path(wheel), version, python).items():

@@ -41,7 +41,7 @@ NOT_GIVEN = {  # patterns of lines
     r".* practise ": "a quarter of an hour: tests/lab/practising/",
     r".* --practice mine": "what practise finds in a quarter of an hour",
     r".* build (wasm|library|plugin)": "compilers, minutes: tests/ahead/, tests/plugin/",
-    r".* serve .*--(midi-in|follow|part)\b": "hardware: keyboards, a microphone",
+    r".* serve .*--follow\b": "hardware: a microphone",
     r".* devices$": "hardware",
     r".* learn ": "hardware: tests/test_learn_command.py moves a controller",
     r".* --mapping my.toml": "what the reader adds: tests/test_worked_examples.py",

@@ -199,8 +199,9 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
         while drained < last:
             event = ring[drained & (size - 1)]
             frame, kind, number = event.frame, event.kind, writer
-            if writer in (SERVER, PAGES):
-                number = queue_of(writer, kind >> KIND_BITS)
+            sender = kind >> KIND_BITS
+            if writer == PAGES or (writer == SERVER and 0 < sender <= SENDER_QUEUES):
+                number = queue_of(writer, sender)
                 kind &= (1 << KIND_BITS) - 1
             if number < PAGES and mail.pending[number] == QUEUE_SIZES[number]:
                 break
@@ -225,10 +226,8 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
 
 @compiled_with_aliasing
 def queue_of(writer: int, number: int) -> int:
-    """The queue of a page, or of a sender: that of the server for 0."""
-    if writer == PAGES:
-        return PAGES + (number & (PAGE_QUEUES - 1))
-    return FIRST_SENDER + ((number - 1) & (SENDER_QUEUES - 1)) if number > 0 else SERVER
+    """The queue of a page, or of a sender, which the server numbers from 1."""
+    return PAGES + (number & (PAGE_QUEUES - 1)) if writer == PAGES else FIRST_SENDER + number - 1
 
 
 @compiled_with_aliasing

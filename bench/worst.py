@@ -9,10 +9,11 @@ CPU time is that of this thread, which leaves out most of what else the machine 
 
 With --mixes, players by MIDI, by OSC and on a page play a note every 10 ms, the page half of them
 50 ms ahead. Beside them plays a random mix: up to 31 pages, of owners and guests, that send all
-kinds of commands as fast as they may, now and ahead; up to 2,000 notes a second by OSC, some in
-bundles for one time; another MIDI input. A note is late by the frames from the one that it was sent
-for to the one at which it was applied. Time is that of frames, and of RUNS the least CPU time of
-each block counts; sockets and the system's scheduling are left out.
+kinds of commands as fast as they may, now and ahead; up to 20 others by OSC, with up to twice the
+notes that are admitted, some in bundles for one time; another MIDI input. A note is late by the
+frames from the one that it was sent for to the one at which it was applied. Time is that of frames,
+and of RUNS the least CPU time of each block counts; sockets and the system's scheduling are left
+out.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ import numpy as np
 import report
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.engine.mailbox import MIDI_INPUTS, PAGES, SERVER
+from yehu_server.core.engine.mailbox import MIDI_INPUTS, PAGES, SENDER_QUEUES, SERVER
 from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
@@ -45,6 +46,7 @@ from yehu_server.params.table import ENGINE, TABLE
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import assemble, player_of
+from yehu_server.playing.player import SENDER
 from yehu_server.util.token_bucket import TokenBucket
 
 RATE, BLOCK = 44100.0, 64
@@ -157,7 +159,8 @@ class Stage:
         memory.close()
         count = chance.choice((1, 6, 31)) if mix else 0
         self._mix = [Page(number + 1, count, chance) for number in range(count)]
-        self._osc = chance.choice((0.0, 500.0, 2000.0)) if mix else 0.0  # notes a second
+        self._osc = chance.choice((500.0, 2000.0, 17600.0)) if mix else 0.0  # notes a second
+        self._senders = chance.choice((1, 4, 20))  # by OSC
         self._bundle = chance.choice((1, 20, 200))
         self._pads = chance.choice((0, 100, 1000)) if mix else 0  # MIDI messages a second
         self.asked: dict[str, list[tuple[float, int]]] = {"MIDI": [], "OSC": [], "page": []}
@@ -172,7 +175,8 @@ class Stage:
             kind = chance.choice((0x80, 0x90, 0xA0, 0xB0, 0xC0, 0xD0, 0xE0))
             data = [chance.randrange(KEYS), chance.randrange(128)][: 1 + (kind not in (0xC0, 0xD0))]
             self._feed.receive("pads", [kind + chance.randrange(4), *data], 0)
-        for _ in _due(self._osc / self._bundle, begin, frames):
+        for n in _due(self._osc / self._bundle, begin, frames):
+            SENDER.set(min(2 + n % self._senders, SENDER_QUEUES))
             at = begin + self._chance.choice((0, round(0.2 * RATE)))
             for _ in range(self._bundle):
                 key, velocity = self._chance.randrange(KEYS), self._chance.randrange(128)
@@ -186,6 +190,7 @@ class Stage:
         self.asked["MIDI"].append((key, frame))
         self._feed.receive("keys", [0x90, key, 90], 0)
         self._feed.receive("keys", [0x80, KEYS + (n - 1) % MIDI_KEYS, 0], 0)
+        SENDER.set(1)
         of_osc, of_page = (round(key + n * STEP, 3) for key in (OSC_KEY, PAGE_KEY))
         self.asked["OSC"].append((of_osc, frame))
         self._player.key_on(of_osc, 90.0, frame=frame)

@@ -104,6 +104,10 @@ def test_after_a_reset_it_plays_as_at_first_and_keeps_what_was_set(library):
         yehu.yehu_process(at, samples.ctypes.data, len(samples))
         return samples
 
+    for channels in (0, -1, 3, 1 << 40):  # with which it would write elsewhere than into a block
+        assert not yehu.yehu_prepare(at, RATE, channels)
+    assert not yehu.yehu_prepare(at, RATE + 1.0, 2)
+    assert (memory == 255).all()
     assert yehu.yehu_prepare(at, RATE, 2)
     first = sounds((0xB0, 7, 100), (0x90, 69, 100))
     held = sounds((0x90, 74, 30))  # held as it is reset, as is the one before

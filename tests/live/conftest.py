@@ -155,7 +155,7 @@ class StillServer:
         self.peer.received()
         self.send(address, *arguments, tags=tags)
         self.clock.now += 0.02
-        self.handler.tick()
+        self._do_what_is_due()
         return self.peer.received()
 
     def pass_time(self, seconds: float) -> np.ndarray:
@@ -170,10 +170,16 @@ class StillServer:
                 for other in self.others:
                     other.process(np.zeros(self.block, np.float32))
             self.clock.now += 0.001
-            self.handler.tick()
+            self._do_what_is_due()
         self.events += [move[:3] for move in self._moves.seen()]
         assert self._moves.are_those_of_the_audio_side()
         return np.concatenate(out) if out else np.zeros(0, np.float32)
+
+    def _do_what_is_due(self) -> None:
+        for steps, _, _ in self.handler.due():
+            for _ in steps:
+                pass
+        self.handler.clients.flush()
 
     def value(self, address: str) -> float:
         """The value of a parameter, after everything said up to now was played."""

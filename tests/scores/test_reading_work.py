@@ -108,6 +108,30 @@ def test_reading_takes_time_in_proportion(tmp_path, shape):
     assert lines[2] < MAX_RATIO * lines[1]
 
 
+# Lines of Python for each note of a dense file, and of all that is below them; before notes of MIDI
+# were paired once, and lengths of ABC kept, there were 232 and 1,417.
+DENSE: dict[str, tuple[Callable[[int], bytes | str], int]] = {
+    "dense.mid": (
+        lambda n: midi(b"".join(on(1, 40 + at % 50) + off(0, 40 + at % 50) for at in range(n))),
+        212,
+    ),
+    "dense.abc": (lambda n: ABC + "a3/2b|" * (n // 2), 1290),
+}
+
+
+@pytest.mark.parametrize("shape", DENSE)
+def test_a_note_of_a_dense_file_takes_few_lines(tmp_path, shape):
+    make, most = DENSE[shape]
+    lines = []
+    for n in (FEW, FEW, MORE):
+        data = make(n)
+        path = tmp_path / f"{n} {shape}"
+        path.write_bytes(data if isinstance(data, bytes) else data.encode())
+        lines.append(lines_of(path))
+    a_note = (lines[2] - lines[1]) / (MORE - FEW)
+    assert a_note < most
+
+
 def test_what_lasts_too_long_is_refused_before_it_is_performed(tmp_path, monkeypatch):
     monkeypatch.setattr("yehu_server.scores.reading.performed", None)
     path = tmp_path / "long.abc"

@@ -245,8 +245,11 @@ def putting(rates: Sequence[float], images: Sequence[Array]) -> Native:
 
 
 def prepare(rig: Any, rate: float, channels: int) -> int:
-    """Make an instrument at a rate (Hz), at rest; return 0 where there is none for it."""
-    return int(put(rig, rate, channels, 0))
+    """Make an instrument at a rate (Hz), at rest, with 1 or 2 channels.
+
+    Returns 0 where there is none for that, and then leaves the memory as it is.
+    """
+    return int(put(rig, rate, channels, 0)) if channels in (1, 2) else 0
 
 
 def reset(rig: Any) -> None:

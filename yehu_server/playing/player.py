@@ -8,6 +8,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Collection, Iterable, Sequence
 from collections.abc import Mapping as Values
+from contextvars import ContextVar
 from typing import Any, Self
 
 import mido
@@ -31,6 +32,8 @@ from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, RangePolicy, Tuning
 
 OWN_VALUES = -1.0  # in place of a velocity: the note has been given its values
+# Whose queue the events wait in that this thread posts (``Instrument.post``).
+SENDER: ContextVar[int] = ContextVar("sender", default=0)
 
 
 class Player(PartState):
@@ -121,8 +124,14 @@ class Player(PartState):
     ) -> None:
         """Post an event (``midi.events``); without a frame, for now."""
         with self._lock:
-            frame = self._at(frame)
-            self.instrument.post(kind, frame=frame, index=index, value=value, other=other)
+            self.instrument.post(
+                kind,
+                frame=self._at(frame),
+                index=index,
+                value=value,
+                other=other,
+                sender=SENDER.get(),
+            )
 
     def _at(self, frame: int | None) -> int | None:
         """Return the frame, and record it as the latest one."""
@@ -353,7 +362,8 @@ class Player(PartState):
         if not self._has_stale_tables:
             self.instrument.tables[slot] = self._tables()[0]
             self._slot = slot
-            self.post(events.TABLES_TO, frame, slot)
+            # In the server's own queue, so that the tables come in this order.
+            self.instrument.post(events.TABLES_TO, frame=self._at(frame), index=slot)
 
     def finish_remap(self) -> None:
         """Take a mapping or programs that came too soon after others; to be called now and then."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
@@ -137,7 +138,8 @@ def midi_in_range(
         at = find(note.channel, score.events[note.begins].track)
         own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
         by_part.setdefault("" if is_mpe else own_name, []).append(note)
-    moves: dict[int, int] = {}  # of events, in semitones
+    events = list(score.events)
+    moved: dict[tuple[int, int], Any] = {}  # messages, by those they were and semitones
     parts = []
     for name, own in by_part.items():
         pitches = [note.key + tuned.get(note.begins, 0.0) for note in own]
@@ -146,18 +148,19 @@ def midi_in_range(
         if octaves.summary:
             parts.append((name, octaves))
         for note, by in zip(own, octaves.of_notes, strict=True):
-            if by and 0 <= note.key + 12 * by <= 127:
-                moves[note.begins] = 12 * by
-                end = score.events[note.ends].message  # a note-off, or the key struck again
-                if note.ends >= 0 and (end.type == "note_off" or end.velocity == 0):
-                    moves[note.ends] = 12 * by
-    if not moves:
+            if not by or not 0 <= note.key + 12 * by <= 127:
+                continue
+            for number in (note.begins, note.ends):
+                time_s, message, beat, track = events[number]
+                is_strike = message.type == "note_on" and message.velocity > 0
+                if number < 0 or (is_strike and number != note.begins):  # the key struck again
+                    continue
+                higher = moved.get((id(message), by))
+                if higher is None:
+                    higher = moved[id(message), by] = transposed(message, 12 * by)
+                events[number] = ScoreEvent(time_s, higher, beat, track)
+    if not moved:
         return score
-    events = list(score.events)
-    for number, by in moves.items():
-        event = events[number]
-        message = transposed(event.message, by)
-        events[number] = ScoreEvent(event.time_s, message, event.beat, event.track)
     is_one = len(by_part) == 1
     line = line_of([("" if is_one else name, octaves) for name, octaves in parts], within)
     remarks = (*score.remarks, *filter(None, (line,)))

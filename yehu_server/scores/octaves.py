@@ -58,12 +58,13 @@ def octaves_of(notes: Sequence[NoteSpan], rest: float, within: NoteRange = YEHU)
     Notes come in the order of their beginnings. A silence of `rest`, in their unit, parts phrases;
     the instrument has the notes `within`.
     """
-    whole = _best(_ends(notes), 0, within)
+    of_all = _ends(notes)
+    whole = _best(of_all, 0, within)
     phrases = _phrases(notes, rest)
     of_notes: list[int] = []
     others = outside = 0
     for phrase in phrases:
-        ends = _ends(phrase)
+        ends = of_all if len(phrases) == 1 else _ends(phrase)
         own = _best(ends, whole, within)
         others += own != whole
         outside += _outside(ends, own, within)
@@ -76,7 +77,10 @@ _Ends = Mapping[tuple[float, float], int]
 
 def _ends(notes: Sequence[NoteSpan]) -> _Ends:
     """How many notes have each lowest and highest pitch; those without a pitch are left out."""
-    return Counter((min(n.pitches), max(n.pitches)) for n in notes if n.pitches)
+    ends: Counter[tuple[float, float]] = Counter()
+    for pitches, count in Counter(n.pitches for n in notes if n.pitches).items():
+        ends[min(pitches), max(pitches)] += count
+    return ends
 
 
 def _best(ends: _Ends, preferred: int, within: NoteRange) -> int:

@@ -181,9 +181,9 @@ def _changed(score: Score, velocities: dict[int, int], ends_s: dict[int, float])
     for number, event in enumerate(score.events):
         if number in velocities:
             message = event.message.copy(velocity=velocities[number])
-            events.append(replace(event, message=message))
+            events.append(event._replace(message=message))
         elif number in ends_s:
-            events.append(replace(event, time_s=ends_s[number]))
+            events.append(event._replace(time_s=ends_s[number]))
         else:
             events.append(event)
     events.sort(key=lambda event: event.time_s)

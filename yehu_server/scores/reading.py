@@ -213,14 +213,14 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
     elif len(score.parts) > 1 and not (options.all_parts or is_mpe):
         is_usual = options.within == YEHU
         score = tune if is_usual else chosen_parts.default_midi_part(score, options.within)
-    score = replace(score, delays=delays)
     if not has_notes([score]):
         line = "has controllers and no note: nothing sounds"
-        return replace(score, remarks=(*score.remarks, line))
-    if not options.in_range:
-        return score
-    channels = range(16) if is_mpe else options.channels
-    return chosen_parts.midi_in_range(score, channels, is_mpe=is_mpe, within=options.within)
+        score = replace(score, remarks=(*score.remarks, line))
+    elif options.in_range:
+        channels = range(16) if is_mpe else options.channels
+        within = options.within
+        score = chosen_parts.midi_in_range(score, channels, is_mpe=is_mpe, within=within)
+    return replace(score, delays=delays)
 
 
 def read_written(path: Path, song: int | None = None) -> Written:

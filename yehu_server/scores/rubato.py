@@ -130,5 +130,5 @@ def delayed(score: Score, amount: float) -> Score:
     def played(seconds: float) -> float:
         return seconds + amount * at_time(score.delays, seconds)
 
-    events = (replace(event, time_s=played(event.time_s)) for event in score.events)
+    events = (event._replace(time_s=played(event.time_s)) for event in score.events)
     return replace(score, events=tuple(events), duration_s=played(score.duration_s), delays=())

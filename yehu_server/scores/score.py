@@ -10,9 +10,9 @@ from bisect import insort
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import mido
 
@@ -81,8 +81,7 @@ class Setting:
     type: ClassVar[str] = "setting"  # as messages have one
 
 
-@dataclass(frozen=True)
-class ScoreEvent:
+class ScoreEvent(NamedTuple):
     """One channel-voice message at its time (s) from the start of the score.
 
     `beat` is its time in quarter notes; NaN where the file counts frames of a film. `track` is
@@ -90,7 +89,7 @@ class ScoreEvent:
     """
 
     time_s: float
-    message: mido.Message
+    message: Any  # mido.Message, or Setting
     beat: float = math.nan
     track: int = 0
 
@@ -171,6 +170,11 @@ class Score:
             metre = each
         return metre.beat, metre.quarters
 
+    @cached_property
+    def notes(self) -> tuple[ScoreNote, ...]:
+        """Its notes; see `notes_of`."""
+        return tuple(_paired(self))
+
     def __post_init__(self) -> None:
         check_duration(self.duration_s, LONGEST_DURATION_H)
 
@@ -223,10 +227,14 @@ def notes_of(score: Score) -> list[ScoreNote]:
 
     A key that is struck again ends its note, as the instrument has it.
     """
+    return list(score.notes)
+
+
+def _paired(score: Score) -> Iterator[ScoreNote]:
+    events = score.events
     held: dict[tuple[int, int], int] = {}
     ends: dict[int, int] = {}  # by the number of a note-on
-    for number, event in enumerate(score.events):
-        message = event.message
+    for number, (_, message, _, _) in enumerate(events):
         kind = message.type
         if kind not in ("note_on", "note_off"):
             continue
@@ -236,13 +244,12 @@ def notes_of(score: Score) -> list[ScoreNote]:
         if kind == "note_on" and message.velocity > 0:
             held[key] = number
             ends[number] = -1
-    found = []
     for number, end in ends.items():
-        event, message = score.events[number], score.events[number].message
-        end_s = score.events[end].time_s if end >= 0 else score.duration_s
-        at = (message.channel, message.note, message.velocity)
-        found.append(ScoreNote(number, end, *at, event.time_s, end_s, event.beat))
-    return found
+        start_s, message, beat, _ = events[number]
+        end_s = events[end].time_s if end >= 0 else score.duration_s
+        yield ScoreNote(
+            number, end, message.channel, message.note, message.velocity, start_s, end_s, beat
+        )
 
 
 def transposed(message: mido.Message, by: int) -> mido.Message:

@@ -12,8 +12,10 @@ from yehu_server.core.engine.mailbox import (
     LIVE_BUDGET,
     MIDI_INPUTS,
     PAGE_QUEUE,
-    PAGE_RESERVE,
     PAGES,
+    RESERVE,
+    SENDER_QUEUE,
+    SENDER_QUEUES,
     SERVER,
     SMALL_RING,
 )
@@ -46,6 +48,12 @@ def post_of_page(instrument: Instrument, page: int, frame: int, kind: int, *numb
     post(instrument, PAGES, frame, kind + (page << KIND_BITS), *numbers)
 
 
+def post_of_sender(
+    instrument: Instrument, sender: int, frame: int, kind: int, *numbers: float
+) -> None:
+    post(instrument, SERVER, frame, kind + (sender << KIND_BITS), *numbers)
+
+
 def play(instrument: Instrument, frames: int, block: int = BLOCK) -> list[tuple]:
     """Play on; return the commands that were applied: frame, kind, index, value, other."""
     applied = []
@@ -57,7 +65,7 @@ def play(instrument: Instrument, frames: int, block: int = BLOCK) -> list[tuple]
 
 def fill_queues(instrument: Instrument, pages: int, due: int = DUE) -> int:
     """Fill the queues of pages with ends of notes that nobody plays; return how many."""
-    for n in range(PAGE_QUEUE - PAGE_RESERVE):
+    for n in range(PAGE_QUEUE - RESERVE):
         for page in range(pages):
             post_of_page(instrument, page, due, END, 7, 60.0 + n % 12)
         if n % 16 == 0:  # or the ring is full
@@ -65,7 +73,7 @@ def fill_queues(instrument: Instrument, pages: int, due: int = DUE) -> int:
     play(instrument, 4 * BLOCK)
     assert instrument.frame < due
     assert instrument.dropped_events == 0
-    return pages * (PAGE_QUEUE - PAGE_RESERVE)
+    return pages * (PAGE_QUEUE - RESERVE)
 
 
 def frames_of(applied: list[tuple], kind: int, value: float) -> list[int]:
@@ -139,6 +147,41 @@ def test_a_page_is_not_late_for_what_the_server_is_sent_nor_the_server_for_pages
     assert page < now + BLOCK
 
 
+@pytest.mark.parametrize("block", [64, 128])
+def test_a_note_of_a_sender_is_not_late_for_bundles_of_others(block: int) -> None:
+    instrument = live()
+    wanted, applied = [], []
+    for n in range(60):
+        for sender in range(2, SENDER_QUEUES + 1) if n % 15 == 0 else ():
+            for key in range(200 if sender == 2 else 110):
+                post_of_sender(instrument, sender, instrument.frame, NOTE_ON, 7, 60.0 + key, 0.5)
+        wanted.append(instrument.frame)
+        post_of_sender(instrument, 1, instrument.frame, BEGIN, 2, MARK + n / 100, MARK)
+        applied += play(instrument, block, block)
+    applied += play(instrument, 3000, block)
+    found = [frames_of(applied, BEGIN, MARK + n / 100) for n in range(60)]
+    late = [frame - asked for (frame,), asked in zip(found, wanted, strict=True)]
+    assert max(late) < block
+    assert instrument.dropped_events == 0
+
+
+def test_a_sender_that_fills_its_queue_loses_its_own_events_alone() -> None:
+    instrument = live()
+    room = SENDER_QUEUE - RESERVE
+    for n in range(room + 50):
+        post_of_sender(instrument, 3, DUE, WRITE, VOLUME, n / 10000)
+        if n % 1000 == 0:  # or more than is drained for a block waits
+            play(instrument, BLOCK)
+    post_of_sender(instrument, 3, DUE, RELEASE_ALL)
+    post_of_sender(instrument, 4, DUE, SLIDE, 0, MARK)
+    post(instrument, SERVER, DUE, SLIDE, 0, MARK + 1)
+    applied = play(instrument, DUE + 800 - instrument.frame)
+    assert instrument.dropped_events == 50
+    for pitch in (MARK, MARK + 1):
+        (frame,) = frames_of(applied, SLIDE, pitch)
+        assert frame < DUE + BLOCK
+
+
 def test_releases_of_all_cost_as_little_as_others_however_much_waits() -> None:
     instrument = live()
     fill_queues(instrument, 12, due=100_000)
@@ -151,7 +194,7 @@ def test_releases_of_all_cost_as_little_as_others_however_much_waits() -> None:
 
 def test_a_page_that_fills_its_queue_loses_its_own_events_and_still_ends_what_it_played() -> None:
     instrument = live()
-    room = PAGE_QUEUE - PAGE_RESERVE
+    room = PAGE_QUEUE - RESERVE
     for n in range(room + 50):
         post_of_page(instrument, 3, DUE, WRITE, VOLUME, n / 1000)
     post_of_page(instrument, 3, DUE, LEAVE, 1 << 16, 1 << 12)

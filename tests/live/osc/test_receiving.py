@@ -63,7 +63,10 @@ class Collector:
         if self.answer is not None:
             peer.send(self.answer)
 
-    def tick(self) -> None:
+    def due(self) -> list[tuple[Iterator[None], object, int]]:
+        return []
+
+    def flush(self) -> None:
         self.ticks += 1
         self.since_tick.append(0)
         self.ticked_s.append(time.thread_time())

@@ -5,8 +5,8 @@ that it is for are computed (``midi.interpret_events``); its commands go to the 
 play.
 
 Whatever is sent, the work for a frame is bounded: events beyond a budget of commands
-(``mailbox.ready_at``) come at a later frame, MIDI's first. Then the server and each page have
-as many commands each (`next_queue`). Each has a queue of its own.
+(``mailbox.ready_at``) come at a later frame, MIDI's first. Then the server, each sender of OSC and
+each page have as many commands each (`next_queue`). Each has a queue of its own.
 """
 
 from __future__ import annotations
@@ -19,18 +19,19 @@ from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.engine.atomics import at, load_acquire, record_at, store_release
 from yehu_server.core.engine.mailbox import (
+    FIRST_SENDER,
     HEAP,
     KIND_BITS,
     MAIL,
     MIDI_INPUTS,
-    PAGE_QUEUE,
     PAGE_QUEUES,
-    PAGE_RESERVE,
     PAGES,
     QUEUE_SIZES,
     QUEUE_STARTS,
     QUEUES,
+    RESERVE,
     ROOM,
+    SENDER_QUEUES,
     SERVER,
     SOUND_INPUT,
     WAITING,
@@ -182,7 +183,8 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
     """Move posted events to the queues of a part, so many from each ring.
 
     A writer that lost its count, or laps the reader, loses what it wrote; and so does one that
-    writes frames too far from now, and a page whose queue is full. All are counted.
+    writes frames too far from now, and a page or sender of OSC whose queue is full. All are
+    counted. What finds the queue of the server or of an input full waits in the ring.
     """
     for writer in range(WRITERS):
         farthest = FARTHEST if writer == SERVER else FARTHEST_AHEAD
@@ -194,17 +196,20 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
             mail.dropped[writer, 0] += 1
             drained = posted
         last = min(posted, drained + mail.intake)
-        while drained < last and (writer == PAGES or mail.pending[writer] < QUEUE_SIZES[writer]):
+        while drained < last:
             event = ring[drained & (size - 1)]
             frame, kind, number = event.frame, event.kind, writer
+            sender = kind >> KIND_BITS
+            if writer == PAGES or (writer == SERVER and 0 < sender <= SENDER_QUEUES):
+                number = queue_of(writer, sender)
+                kind &= (1 << KIND_BITS) - 1
+            if number < PAGES and mail.pending[number] == QUEUE_SIZES[number]:
+                break
             if writer in (MIDI_INPUTS, SOUND_INPUT):
                 frame = frame_of_arrival(rigs, mail, frame)
-            elif writer == PAGES:
-                number += (kind >> KIND_BITS) & (PAGE_QUEUES - 1)
-                kind &= (1 << KIND_BITS) - 1
             drained += 1
             is_near = now - FARTHEST < frame < now + farthest
-            if not is_near or (writer == PAGES and not takes(mail.pending[number], kind)):
+            if not is_near or not takes(number, mail.pending[number], kind):
                 mail.dropped[writer, 0] += 1
                 continue
             mail.late[writer] += 1 if frame < now else 0
@@ -220,10 +225,19 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
 
 
 @compiled_with_aliasing
-def takes(pending: int, kind: int) -> bool:
-    """Whether a page's queue takes an event; the last entries are for those that end what plays."""
-    is_end = kind in (LEAVE, LIFT, RELEASE_ALL)
-    return bool(pending < (PAGE_QUEUE if is_end else PAGE_QUEUE - PAGE_RESERVE))
+def queue_of(writer: int, number: int) -> int:
+    """The queue of a page, or of a sender, which the server numbers from 1."""
+    return PAGES + (number & (PAGE_QUEUES - 1)) if writer == PAGES else FIRST_SENDER + number - 1
+
+
+@compiled_with_aliasing
+def takes(number: int, pending: int, kind: int) -> bool:
+    """Whether a queue takes an event.
+
+    Of a page and a sender the last entries are for those that end what plays.
+    """
+    is_any = number < PAGES or kind in (LEAVE, LIFT, RELEASE_ALL)
+    return bool(pending < (QUEUE_SIZES[number] if is_any else QUEUE_SIZES[number] - RESERVE))
 
 
 @compiled_with_aliasing

@@ -12,6 +12,8 @@ from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine import native
 from yehu_server.core.engine.event_dispatch import interpret_events
 from yehu_server.core.engine.mailbox import (
+    FIRST_SENDER,
+    KIND_BITS,
     LIVE_BUDGET,
     LIVE_INTAKE,
     RING,
@@ -268,10 +270,19 @@ class Instrument:
         index: int = 0,
         value: float = 0.0,
         other: float = 0.0,
+        sender: int = 0,
     ) -> bool:
-        """Post an event (``midi.events``), by default for now; return whether there was room."""
+        """Post an event (``midi.events``), by default for now; return whether there was room.
+
+        `sender`: whose queue it waits in, from 1 to SENDER_QUEUES, or 0 for the server's own.
+        """
         frame = self.frame if frame is None else frame
+        kind += sender << KIND_BITS
         return bool(native.post.call(self._address, frame, kind, index, value, other))
+
+    def has_waiting(self, sender: int) -> bool:
+        """Whether events of a sender (see `post`) wait for their frame."""
+        return bool(self._rig["mail"]["pending"][0, FIRST_SENDER + sender - 1])
 
     def interpret_events(self) -> None:
         """Interpret what is posted for now, so that the record of the part has it.

@@ -4,7 +4,7 @@ Whoever plays posts events (``midi.events``) to a ring of its own; the audio sid
 queue of the writer, a heap in the order of their frames, interprets them, and reports applied
 commands in a further ring. Each ring has one writer and one reader. Each moves only its own cursor,
 after it has written or read the entry, so neither waits. Events for a full ring, or for a full
-queue of a page, are dropped and counted.
+queue of a page or of a sender of OSC, are dropped and counted.
 """
 
 from __future__ import annotations
@@ -28,15 +28,20 @@ APPLIED_AT_ONCE = 64  # commands at one frame; the rest waits for the next
 LIVE_INTAKE, LIVE_BUDGET, BUDGET_PER_FRAME = 1 << 10, 1 << 8, 3
 UNLIMITED = 1 << 40
 # The writers of events. Inputs give the time of arrival (ns) in place of a frame; pages put their
-# number above the KIND_BITS of a kind.
+# number above the KIND_BITS of a kind, and the server that of the sender (0: itself).
 MIDI_INPUTS, SERVER, SOUND_INPUT, PAGES = range(4)
 WRITERS = 4
 KIND_BITS = 8
-# Events to come: a queue of each writer, and one of each page, so that none fills another's.
+# Events to come: a queue of each writer, of each page and of senders of OSC, so that none fills
+# another's.
 PAGE_QUEUES, PAGE_QUEUE = 64, 1 << 8
-PAGE_RESERVE = 8  # entries for the ends of what a page played
-QUEUES = PAGES + PAGE_QUEUES
-QUEUE_SIZES = np.array([SMALL_RING, HEAP, SMALL_RING, *[PAGE_QUEUE] * PAGE_QUEUES])
+SENDER_QUEUES, SENDER_QUEUE = 8, 1 << 11
+RESERVE = 8  # entries of these, for the ends of what a page or sender played
+FIRST_SENDER = PAGES + PAGE_QUEUES
+QUEUES = FIRST_SENDER + SENDER_QUEUES
+QUEUE_SIZES = np.array(
+    [SMALL_RING, HEAP, SMALL_RING, *[PAGE_QUEUE] * PAGE_QUEUES, *[SENDER_QUEUE] * SENDER_QUEUES]
+)
 QUEUE_STARTS = np.cumsum(QUEUE_SIZES) - QUEUE_SIZES
 
 WAITING = np.dtype([("command", COMMAND), ("order", np.int64)])

@@ -19,15 +19,17 @@ from yehu_server.live.osc.packets import Message, PacketError, answer, steps
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.playing_calls import PartCalls, within_an_hour
 from yehu_server.live.osc.schedule import AHEAD_S, TagClock
+from yehu_server.live.osc.sender_queues import SenderQueues
 from yehu_server.live.part_addresses import part_of, split_group
 from yehu_server.params.table import PREFIX
 from yehu_server.playing.delay import Arrivals
 from yehu_server.playing.mapping import Mapping
+from yehu_server.playing.player import SENDER
 from yehu_server.playing.sources import is_own
 
 log = logging.getLogger(__name__)
 
-DUE_AT_ONCE = 32  # scheduled messages, between others
+DUE_AT_ONCE = 512  # scheduled messages, which then take turns with others
 LONGEST_WAIT_S = 0.5
 FAR_S = 60.0  # a time tag so far ahead is told
 MAX_FAR = 64  # hosts that are told of, each once
@@ -46,6 +48,7 @@ class OscHandler:
         self._schedule = context.schedule
         self._tags = TagClock(self._players[0])
         self._arrivals = Arrivals(self._players[0].frame_of, self._players[0].instrument.rate)
+        self._queues = SenderQueues([player.instrument for player in self._players])
         self._far: set[str] = set()  # hosts that were told of
         self._acts: dict[str, Act] = {}
         for group in self._groups:
@@ -90,11 +93,15 @@ class OscHandler:
                 self.counts.late_bundles += message.due_s is not None and not is_late
                 is_late |= message.due_s is not None
                 call = Request(message.arguments, message.payload, peer, frame)
+                queue = self._queues.queue_of(peer, frame)
                 for action in self._actions(message.address, peer):
+                    sender = SENDER.set(queue)
                     try:  # one refusal does not stop the others that match a pattern
                         action(call)
                     except YehuError as error:
                         self.context.send_error(peer, message.address, str(error))
+                    finally:
+                        SENDER.reset(sender)
                     yield
         except PacketError as error:
             self.counts.malformed += 1
@@ -114,8 +121,8 @@ class OscHandler:
         if not self._schedule.add(message.due_s or 0.0, packet, peer):
             self.context.send_error(peer, message.address, "too many messages wait for their time")
 
-    def tick(self) -> None:
-        """Do what is due."""
+    def due(self) -> Iterator[tuple[Iterator[None], Peer, int]]:
+        """What is to be done for messages whose time has come: steps, sender and size of each."""
         # Early enough to be there when the device asks for their frames.
         self._schedule.ahead_s = AHEAD_S + self._players[0].delay / self._players[0].instrument.rate
         for _ in range(DUE_AT_ONCE):
@@ -123,12 +130,10 @@ class OscHandler:
             if due is None:
                 break
             due_s, packet, peer = due
-            for _ in self.handle(packet, peer, frame=self._tags.frame_at(due_s)):
-                pass
-        self.clients.flush()
+            yield self.handle(packet, peer, frame=self._tags.frame_at(due_s)), peer, len(packet)
 
     def wait_s(self) -> float:
-        """Seconds until `tick` has something to do, or has to check again."""
+        """Seconds until something is due or to be sent, or has to be checked again."""
         waits = self._schedule.wait_s(), self.clients.wait_s(), LONGEST_WAIT_S
         return min(wait for wait in waits if wait is not None)
 

@@ -117,8 +117,10 @@ class OscPorts:
                 wait_s = 0.0 if self._queue else self._handler.wait_s()
                 for key, events in self._selector.select(wait_s):
                     key.data(events)
+                for steps, peer, size in self._handler.due():
+                    self._queue.add(steps, peer, size, always=True)
                 self._queue.work()
-                self._handler.tick()
+                self._handler.clients.flush()
                 self._accept_again()
             except Exception:  # a defect of the server must not end the thread
                 self.traffic.failures += 1

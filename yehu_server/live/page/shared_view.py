@@ -13,8 +13,8 @@ from yehu_server.core.engine.mailbox import (
     KIND_BITS,
     PAGE_QUEUE,
     PAGE_QUEUES,
-    PAGE_RESERVE,
     PAGES,
+    RESERVE,
 )
 from yehu_server.core.engine.rig import RIG, RIG_BYTES
 from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
@@ -83,7 +83,7 @@ class SharedView:
     def room(self, rig: int, page: int) -> int:
         """Number of events that the queue of a page has room for."""
         pending = self._rigs["mail"]["pending"][rig, PAGES + page % PAGE_QUEUES]
-        return PAGE_QUEUE - PAGE_RESERVE - int(pending)
+        return PAGE_QUEUE - RESERVE - int(pending)
 
     def held(self, rig: int) -> Array:
         """Indices of the parameters of a part that the owner holds."""

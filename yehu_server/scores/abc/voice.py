@@ -23,6 +23,7 @@ SPREADS = ("pitch", "octave", "not")  # how far an accidental reaches in its bar
 TIMES = {2: 3, 3: 2, 4: 3, 6: 2, 8: 3}  # of tuplets; others depend on the metre
 LONGEST = 64  # quarters of a note
 MAX_BARS_REST = 1000
+MAX_LENGTHS = 1000  # that are remembered
 LENGTH = r"\d*/*\d*"
 NOTE = rf"(\^\^|\^|__|_|=)?([A-Ga-g])([',]*)({LENGTH})(-?)"
 TOKEN = re.compile(
@@ -46,10 +47,12 @@ TOKEN = re.compile(
 |(?P<other>.)""",
     re.VERBOSE,
 )
-KINDS = (
-    "bar", "ending", "text", "sign", "chord", "grace", "note", "rest", "bars", "tuplet", "slur",
-    "tie", "broken", "short", "over", "space", "other",
-)  # fmt: skip
+# The kind of a token by the last group that is in it, where that is not its own.
+KINDS = {
+    "number": "bar", "chord_length": "chord", "chord_tie": "chord", "rest_length": "rest",
+    "bars_count": "bars", "ratio": "tuplet",
+}  # fmt: skip
+ONE = Fraction(1)
 NOTE_AT = TOKEN.groupindex["note"]  # its own groups follow
 
 
@@ -83,7 +86,10 @@ class VoiceReader:
         self._slur_count = 0
         self._last: list[RawNote] = []
         self._last_begin = Fraction(0)
-        self._next_factor = Fraction(1)
+        self._next_factor = ONE
+        # Lengths by how they are written, in one unit: most are alike, and fractions take long.
+        self._lengths: dict[str, Fraction] = {}
+        self._lengths_unit = self.unit
         self._tuplet: list[Fraction] = []  # factors of the next notes
         self._count = 0
         self._in_overlay = False
@@ -134,7 +140,8 @@ class VoiceReader:
                 reader._take(found)  # noqa: SLF001 - of the same class
 
     def _take(self, found: re.Match[str]) -> None:  # noqa: C901, PLR0912 - a branch for each token
-        kind = next((name for name in KINDS if found[name]), "")
+        last = found.lastgroup or ""
+        kind = KINDS.get(last, last)
         if kind == "bar":
             self._bar_line(found["bar"].lstrip("."), found["number"] or "")
         elif kind == "ending":
@@ -147,7 +154,7 @@ class VoiceReader:
         elif kind == "chord":
             self._chord(found)
         elif kind == "rest":
-            self._add([], _length(found["rest_length"]) * self.unit)
+            self._add([], self._length(found["rest_length"]))
         elif kind == "bars":
             self._end_bar()
             for _ in range(min(int(found["bars_count"][:5] or 1), MAX_BARS_REST)):
@@ -195,12 +202,23 @@ class VoiceReader:
         moved = self._properties
         octave += moved["clef"] + moved["octave"]
         pitch = MIDDLE_C + SEMITONES[name] + alter + 12.0 * octave + moved["transpose"]
-        return min(max(pitch, 0.0), 127.0), _length(length) * self.unit
+        return min(max(pitch, 0.0), 127.0), self._length(length)
+
+    def _length(self, text: str) -> Fraction:
+        """A length in quarters."""
+        length = self._lengths.get(text)
+        if length is None or self._lengths_unit is not self.unit:
+            if self._lengths_unit is not self.unit or len(self._lengths) >= MAX_LENGTHS:
+                self._lengths_unit, self._lengths = self.unit, {}
+            length = self._lengths[text] = _length(text) * self.unit
+        return length
 
     def _notes(
-        self, pitched: list[tuple[float, Fraction]], ties: bool, factor: Fraction = Fraction(1)
+        self, pitched: list[tuple[float, Fraction]], ties: bool, factor: Fraction = ONE
     ) -> None:
-        pitch, length = max(pitched)[0], pitched[0][1] * factor
+        pitch, length = max(pitch for pitch, _ in pitched), pitched[0][1]
+        if factor is not ONE:
+            length *= factor
         if len(pitched) > 1:
             self._warnings["lower notes of chords are not played"] += len(pitched) - 1
         note = RawNote(self._at, length, pitch, ("1", "1"), marks=self._marks)
@@ -215,13 +233,15 @@ class VoiceReader:
     def _add(self, notes: list[RawNote], length: Fraction) -> None:
         """Put a note, or a rest, where the music is."""
         self._count_note()
-        length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
-        self._next_factor = Fraction(1)
-        length = min(length, Fraction(LONGEST))
+        if self._next_factor is not ONE or self._tuplet:
+            length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
+            self._next_factor = ONE
+        if length.numerator > LONGEST * length.denominator:
+            length = Fraction(LONGEST)
         self._last, self._last_begin = notes, self._at
         for note in notes:
             note.length = length
-            if length > 0:
+            if length:
                 self._bar.notes.append(note)
         self._at += length
 

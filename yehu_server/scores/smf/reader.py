@@ -248,13 +248,17 @@ def _play_together(
 
 def without_resting_wheels(messages: Sequence[Placed]) -> list[Placed]:
     """The messages without CC 1 of channels where it is 0 throughout: a wheel that nobody moves."""
-
-    def is_wheel(message: mido.Message) -> bool:
-        return bool(message.type == "control_change" and message.control == MOD_WHEEL)
-
-    wheels = [message for _, message, _ in messages if is_wheel(message)]
-    moved = {message.channel for message in wheels if message.value > 0}
-    return [placed for placed in messages if not is_wheel(placed[1]) or placed[1].channel in moved]
+    found: dict[int, list[int]] = {}  # by channel: places of its moves
+    moved: set[int] = set()
+    for place, (_, message, _) in enumerate(messages):
+        if message.type == "control_change" and message.control == MOD_WHEEL:
+            found.setdefault(message.channel, []).append(place)
+            if message.value > 0:
+                moved.add(message.channel)
+    resting = {at for channel, places in found.items() if channel not in moved for at in places}
+    if not resting:
+        return list(messages)
+    return [placed for place, placed in enumerate(messages) if place not in resting]
 
 
 def _events(
@@ -263,10 +267,15 @@ def _events(
     """Messages at their times; each is of the track within whose bytes it lies."""
     events: list[ScoreEvent] = []
     before, seconds, beat = -1, 0.0, 0.0
+    begin, end, track = 0, 0, 0  # of the bytes of the last message's track, and its number
     for tick, message, at in messages:
         if tick != before:
             before, seconds, beat = tick, clock.seconds(tick), clock.beat(tick)
-        track = first - 1 + bisect_right(starts, at)
+        if not begin <= at < end:
+            number = bisect_right(starts, at)
+            begin = starts[number - 1] if number else 0
+            end = starts[number] if number < len(starts) else MAX_BYTES
+            track = first - 1 + number
         events.append(ScoreEvent(seconds, message, beat, track))
     return tuple(events)
 

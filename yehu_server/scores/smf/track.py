@@ -168,16 +168,6 @@ class _Cursor:
             raise EOFError
         return self.data[self.pos] >= 0x80
 
-    def status(self, running: int) -> int:
-        """The status byte here; without one, the running one."""
-        if self.pos >= self.end:
-            raise EOFError
-        byte = self.data[self.pos]
-        if byte < 0x80:
-            return running
-        self.pos += 1
-        return byte
-
     def skip_to_status(self) -> None:
         found = STATUS.search(self.data, self.pos, self.end)
         if found is None:
@@ -210,53 +200,76 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
     """
     track = Track(start_at=start)
     cursor = _Cursor(data, start, stop)
-    tick = 0
-    at = start
+    keep, message_of = track.messages.append, _message
+    tick = longest = events = 0
+    at = pos = start
     running = 0  # kept across metas and sysex, as some writers rely on it
     try:
-        while cursor.pos < stop and track.events <= room:
-            at = cursor.pos
+        while pos < stop and events <= room:
+            at = pos
             delta = data[at]
-            if delta < 0x80:  # as most are
-                cursor.pos += 1
-            else:
+            pos = at + 1
+            if delta >= 0x80:  # few are
+                cursor.pos = at
                 delta = cursor.number(faults)
+                pos = cursor.pos
             tick += delta
-            if not running and not cursor.at_status():
-                faults.add("data without a status byte skipped", cursor.pos)
-                cursor.skip_to_status()
-            status = cursor.status(running)
+            if pos < stop and data[pos] < 0x80 and running:
+                status = running
+            else:
+                cursor.pos = pos
+                if not running and not cursor.at_status():
+                    faults.add("data without a status byte skipped", pos)
+                    cursor.skip_to_status()
+                status = cursor.byte()
+                pos = cursor.pos
             if status < SYSEX:
                 running = status
-                body = cursor.take(1 if status & 0xE0 == 0xC0 else 2)
+                length = 1 if status & 0xE0 == 0xC0 else 2
+                cursor.pos = pos
+                body = data[pos : pos + length] if pos + length <= stop else cursor.take(length)
+                pos += length
                 if body.isascii():  # no byte above 127
-                    track.messages.append((tick, _message(status, body), at))
+                    keep((tick, message_of(status, body), at))
                 else:
                     # Dropped at its full length: mostly this is a velocity above 127, and the
                     # next message is intact.
                     faults.add("a damaged message dropped", at)
-            elif status == META:
-                kind = cursor.byte()
-                body = cursor.take(cursor.number(faults))
-                if kind == END_OF_TRACK:
-                    track.end, track.end_at, track.after_end = tick, at, cursor.pos
-                    break
-                _keep(track, tick, kind, body, at, faults)
-            elif status in (SYSEX, ESCAPE):
-                body = cursor.take(cursor.number(faults))
-                if status == SYSEX and is_tuning(body) and len(track.tunings) < MAX_MESSAGES:
-                    track.tunings.append((tick, body))
             else:
-                faults.add("a system message, which no file should hold, skipped", at)
-                cursor.take(SYSTEM_DATA_BYTES.get(status, 0))
+                _take_other(track, cursor, status, tick, at, faults)
+                pos = cursor.pos
             track.end, track.end_at = tick, at
-            if delta > track.longest[0]:
+            if track.after_end is not None:
+                break
+            if delta > longest:
+                longest = delta
                 track.longest = delta, tick, at
-            track.events += 1
+            events += 1
     except EOFError:
         track.is_whole = False
         faults.add("a track ends in the middle of an event", at)
+    track.events = events
     return track
+
+
+def _take_other(
+    track: Track, cursor: _Cursor, status: int, tick: int, at: int, faults: DamageReport
+) -> None:
+    """Read an event that is no channel message, after its status."""
+    if status == META:
+        kind = cursor.byte()
+        body = cursor.take(cursor.number(faults))
+        if kind == END_OF_TRACK:
+            track.after_end = cursor.pos
+        else:
+            _keep(track, tick, kind, body, at, faults)
+    elif status in (SYSEX, ESCAPE):
+        body = cursor.take(cursor.number(faults))
+        if status == SYSEX and is_tuning(body) and len(track.tunings) < MAX_MESSAGES:
+            track.tunings.append((tick, body))
+    else:
+        faults.add("a system message, which no file should hold, skipped", at)
+        cursor.take(SYSTEM_DATA_BYTES.get(status, 0))
 
 
 def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: DamageReport) -> None:

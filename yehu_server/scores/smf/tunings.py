@@ -9,7 +9,7 @@ RP-020]
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from yehu_server.core.midi import registered_parameters as rpn
 from yehu_server.core.midi.registered_parameters import CENTRE
@@ -103,11 +103,11 @@ def retuned(
             elif bend != bends.get(message.channel, 0.0):
                 bends[message.channel] = bend
                 setting = Setting(BEND, bend or None, message.channel)
-                found.append(replace(event, message=setting))
+                found.append(event._replace(message=setting))
         else:
             key = moved.pop(at, message.note)
         same = key == message.note
-        found.append(event if same else replace(event, message=message.copy(note=key)))
+        found.append(event if same else event._replace(message=message.copy(note=key)))
     return tuple(found), tuple(remarks)
 
 
@@ -119,14 +119,16 @@ def transposed_keys(score: Score) -> dict[int, float]:
     found: dict[int, float] = {}
     for number, event in enumerate(score.events):
         message = event.message
-        if message.type == "reset":
+        kind = message.type
+        if kind == "note_on":
+            if (coarse or fine) and message.velocity > 0:
+                by = coarse.get(message.channel, 0.0) + fine.get(message.channel, 0.0)
+                if by:
+                    found[number] = by
+        elif kind == "reset":
             for held in (selected, coarse, fine):
                 held.clear()
-        elif message.type == "note_on" and message.velocity > 0:
-            by = coarse.get(message.channel, 0.0) + fine.get(message.channel, 0.0)
-            if by:
-                found[number] = by
-        elif message.type == "control_change":
+        elif kind == "control_change":
             channel, value = message.channel, message.value
             chosen = selected.get(channel) if message.control == rpn.DATA_ENTRY else None
             if message.control in (rpn.RPN_COARSE, rpn.RPN_FINE):

@@ -164,7 +164,8 @@ class _Performer:
         velocity = self._loudness.velocity(note)
         if self._loudness.is_marked:
             self._swell(played)
-        touches = touches_of(replace(note, pitch=pitch), begin_s, played.end_s, played.trill)
+        sounding = note if pitch == note.pitch else replace(note, pitch=pitch)
+        touches = touches_of(sounding, begin_s, played.end_s, played.trill)
         if slide_of(note) and node is None and len(touches) > 1:  # the first of them slides
             self._setting(touches[1].begin_s, SET, note.beat, ARTICULATION, None)
             self._set.pop(ARTICULATION, None)
@@ -185,7 +186,7 @@ class _Performer:
         before = self._ends.get(key)
         if before is not None and self._timed[before][0] > begin_s:  # struck again
             _, order, number, event = self._timed[before]
-            self._timed[before] = (begin_s, order, number, replace(event, time_s=begin_s))
+            self._timed[before] = (begin_s, order, number, event._replace(time_s=begin_s))
         on = _message(NOTE_ON | self._channel, key, velocity)
         self._add(begin_s, ON, self._beat(begin_s, note), on)
         self._ends[key] = len(self._timed)

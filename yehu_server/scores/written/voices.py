@@ -135,7 +135,8 @@ class Voice:
 
     def _shorten_last(self, beat: Fraction) -> None:
         """End what still sounds: one note at a time."""
-        while self.notes and self.notes[-1].end > beat:
+        # Equality is the usual case, and told much sooner than the order of fractions.
+        while self.notes and (end := self.notes[-1].end) != beat and end > beat:
             last = self.notes.pop()
             if self._tied.get(last.pitch) == len(self.notes):
                 del self._tied[last.pitch]
@@ -144,6 +145,8 @@ class Voice:
 
     def _ends(self, raw: RawNote, beat: Fraction) -> None:
         """Begin and end the spans of a note; those that end, first."""
+        if not raw.ends:
+            return
         trill = next((mark.value for mark in raw.marks if mark.name == "trill"), None)
         for kind in ("stop", "start"):
             for name, which, number in raw.ends:

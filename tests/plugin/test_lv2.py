@@ -38,7 +38,11 @@ def test_it_plays_the_samples_of_the_library(built, library, ports):
 @slow
 def test_its_ports_are_its_state(built, ports):
     values, places = ports
-    changed = values | {places["/mapping"]: 2.0, places["/room/level"]: 0.0}
+    changed = values | {
+        places["/mapping"]: 2.0,
+        places["/room/level"]: 0.0,
+        places["/playing/vibrato"]: 0.0,
+    }
     plugin = Plugin(built / "Yehu.lv2" / "Yehu.so", 96000.0, changed)
     bent = [(0, 0x91, 69, 100), (100, 0xE1, 0, 80)]  # by MPE: 12 of 48 semitones
     samples = plugin.play(bent, 96000, 1024)

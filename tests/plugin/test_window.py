@@ -127,10 +127,10 @@ def test_it_is_played_by_mouse_and_keys_and_the_host_hears_of_it(window, shown):
     preset, mapping = shown["/preset"], shown["/mapping"]
     window("open")
     window(f"click {NEXT[0]} {NEXT[1]}")
-    assert becomes(window, preset.number, 1.0)
+    assert becomes(window, preset.number, preset.default + 1)
     assert window("play 1")[2] > 1  # the preset, and what it moves
     window(f"click {PREV[0]} {PREV[1]}")
-    assert becomes(window, preset.number, 0.0)
+    assert becomes(window, preset.number, preset.default)
     for code in (TAB, END):
         window(f"key {code}")
     assert becomes(window, mapping.number, len(mapping.choices) - 1)
@@ -175,8 +175,10 @@ def test_a_vst3_host_hears_of_a_choice(built, display, shown, tmp_path):
         stdout=subprocess.PIPE,
         check=True,
     )
-    opened, closed, edits, number, value, kept, width = map(float, done.stdout.split())
+    opened, closed, edits, number, value, kept, width, restarted = map(float, done.stdout.split())
     assert (opened, closed, edits) == (1, 0, 1)
     assert number == shown["/preset"].number
-    assert value == kept == pytest.approx(1.0 / shown["/preset"].steps, abs=1e-6)
+    wanted = (shown["/preset"].default + 1) / shown["/preset"].steps
+    assert value == kept == pytest.approx(wanted, abs=1e-6)
+    assert restarted == 1 << 2  # values of parameters have changed
     assert width == 1020

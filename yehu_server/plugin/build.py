@@ -21,7 +21,7 @@ from yehu_server.plugin.targets import ALL, NAMES, X11, System, systems_of
 from yehu_server.util.hints import install_command
 
 SOURCE = Path(__file__).parent / "source"
-COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "text.cpp")
+COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "settings.cpp", "text.cpp")
 CLAP = ("clap.cpp", "clap_notes.cpp")
 VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp")
 # Of the window, where a system has one (`System.window`).
@@ -100,7 +100,7 @@ def build(folder: Path, target: str) -> list[Path]:
 def write_header(work: Path) -> None:
     """Write the header of parameters and what is carried into a folder."""
     data = carried()
-    (work / HEADER_FILE).write_text(header(parameters(*data.names), data))
+    (work / HEADER_FILE).write_text(header(parameters(data), data))
 
 
 def _put(folder: Path, name: str, work: Path) -> list[Path]:

@@ -70,6 +70,7 @@ static const Parameter parameters[] = {{
 {parameters}
 }};
 enum {{ PARAMETERS = {count} }};
+enum {{ NO_PRESET = 0 }}; /* a value of PRESET */
 enum {{ PRESET = {preset}, MAPPING = {mapping}, TUNING = {tuning}, CHANCE = {chance} }};
 enum {{ ARTICULATION = {articulation}, ARTICULATIONS = {articulations} }};
 /* Of each mapping the key that chooses the first articulation, others upwards; or -1. */

@@ -254,7 +254,8 @@ void Editor::draw_gauge(int row, const char *name, const char *value, float shar
 void Editor::draw_chooser(int chooser) {
     const Parameter &p = parameters[CHOSEN[chooser]];
     const float x = CHOOSERS_X + CHOOSER_STEP * (float)chooser, y = CHOOSERS_Y, room = CHOOSER_WIDTH - 2 * ARROW;
-    const char *name = p.choices[chosen[chooser]];
+    char name[64];
+    instrument.all().write(CHOSEN[chooser], chosen[chooser], name, sizeof name);
     canvas.text(x + 2, y - 8, 12, p.name, SOFT);
     canvas.box(x, y, CHOOSER_WIDTH, CHOOSER_HEIGHT, 8, chooser == focus ? OUTER : LINE);
     canvas.box(x + 1.5f, y + 1.5f, CHOOSER_WIDTH - 3, CHOOSER_HEIGHT - 3, 7, SURFACE);

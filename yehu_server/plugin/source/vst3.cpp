@@ -54,7 +54,7 @@ bool read_state(Vst3 &plugin, v3_bstream **stream) {
             break;
     const bool is_right = plugin.instrument.load(text, (size_t)length);
     free(text);
-    for (int i = 0; i < PARAMETERS; i++) plugin.shown[i] = to_unit(i, plugin.instrument.value(i));
+    plugin.shown.copy(plugin.instrument.all());
     return is_right;
 }
 
@@ -143,7 +143,6 @@ v3_result V3_API create(void *, const v3_tuid wanted, const v3_tuid id, void **i
     const void *tables[] = {&component, &processor, &requirements, &controller, &controllers_of_midi, &units};
     memcpy(made->tables, tables, sizeof tables);
     made->references = 1, made->rate = 48000.0;
-    for (int i = 0; i < PARAMETERS; i++) made->shown[i] = to_unit(i, parameters[i].usual);
     const v3_result result = query(*made, id, into);
     unref(*made);
     return result;

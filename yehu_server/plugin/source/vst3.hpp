@@ -23,7 +23,8 @@ struct Vst3 {
     const void *tables[INTERFACES]; /* first: see `of` */
     std::atomic<uint32_t> references;
     double rate;
-    double shown[PARAMETERS]; /* 0 to 1: what the host set the controller to */
+    Settings shown; /* what the host set the controller to */
+    bool unread[PARAMETERS]; /* whether it was changed since by something else */
     v3_component_handler **handler; /* of the host; or null */
     Instrument instrument;
 };
@@ -62,6 +63,8 @@ inline v3_plugin_view **make_view(Vst3 &) { return nullptr; }
 #endif
 
 void write_text(const char *text, int16_t *into); /* into a v3_str_128 */
+/* From the host's main thread: change what is shown, and report what moves with it. */
+void show(Vst3 &plugin, int parameter, double value);
 bool read_state(Vst3 &plugin, v3_bstream **stream);
 bool write_state(const Vst3 &plugin, v3_bstream **stream);
 

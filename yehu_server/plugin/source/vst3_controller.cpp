@@ -34,8 +34,7 @@ v3_result V3_API terminate(void *) { return V3_OK; }
 
 /* The state of the component is that of the controller. */
 v3_result V3_API follow_component(void *self, v3_bstream **) {
-    Vst3 &plugin = of<CONTROLLER>(self);
-    for (int i = 0; i < PARAMETERS; i++) plugin.shown[i] = to_unit(i, plugin.instrument.value(i));
+    of<CONTROLLER>(self).shown.copy(of<CONTROLLER>(self).instrument.all());
     return V3_OK;
 }
 
@@ -71,11 +70,12 @@ v3_result V3_API get_info(void *, int32_t index, v3_param_info *info) {
     return V3_OK;
 }
 
-v3_result V3_API to_text(void *, v3_param_id number, double unit, v3_str_128 text) {
+v3_result V3_API to_text(void *self, v3_param_id number, double unit, v3_str_128 text) {
     const int parameter = parameter_of(number);
     char written[64];
-    if (parameter >= 0) write_value(parameter, from_unit(parameter, unit), written, sizeof written);
-    else snprintf(written, sizeof written, "%d", (int)(127.0 * unit + 0.5));
+    if (parameter >= 0)
+        of<CONTROLLER>(self).shown.write(parameter, from_unit(parameter, unit), written, sizeof written);
+    else snprintf(written, sizeof written, "%.0f", 127.0 * unit);
     write_text(written, text);
     return V3_OK;
 }
@@ -85,7 +85,7 @@ v3_result V3_API from_text(void *, v3_param_id number, int16_t *text, double *un
     char read[64];
     double value;
     read_text(text, read, sizeof read);
-    if (parameter < 0 || !read_value(parameter, read, &value)) return V3_FALSE;
+    if (parameter < 0 || !Settings::read(parameter, read, &value)) return V3_FALSE;
     *unit = to_unit(parameter, value);
     return V3_OK;
 }
@@ -102,15 +102,25 @@ double V3_API to_normalised(void *, v3_param_id number, double value) {
 
 double V3_API get(void *self, v3_param_id number) {
     const int parameter = parameter_of(number);
-    if (parameter >= 0) return of<CONTROLLER>(self).shown[parameter];
-    return number % OF_CHANNEL == BEND ? 0.5 : 0.0;
+    if (parameter < 0) return number % OF_CHANNEL == BEND ? 0.5 : 0.0;
+    Vst3 &plugin = of<CONTROLLER>(self);
+    const double value = plugin.shown.value(parameter);
+    if (plugin.unread[parameter]) plugin.instrument.know(parameter, value);
+    plugin.unread[parameter] = false;
+    return to_unit(parameter, value);
 }
 
 /* Only what is shown: the host sets the processor, at the frame. */
 v3_result V3_API set(void *self, v3_param_id number, double unit) {
     const int parameter = parameter_of(number);
-    if (parameter >= 0) of<CONTROLLER>(self).shown[parameter] = unit;
-    return parameter >= 0 || number < OF_MIDI ? V3_OK : V3_INVALID_ARG;
+    if (parameter < 0) return number < OF_MIDI ? V3_OK : V3_INVALID_ARG;
+    Vst3 &plugin = of<CONTROLLER>(self);
+    const double value = from_unit(parameter, unit);
+    plugin.unread[parameter] = false;
+    /* It may be what the processor reported. */
+    if (is_same(parameter, value, plugin.instrument.value(parameter))) plugin.instrument.know(parameter, value);
+    show(plugin, parameter, value);
+    return V3_OK;
 }
 
 
@@ -181,6 +191,18 @@ v3_result V3_API get_by_bus(void *, int32_t, int32_t, int32_t bus, int32_t, int3
 v3_result V3_API set_program(void *, int32_t, int32_t, v3_bstream **) { return V3_NOT_IMPLEMENTED; }
 
 } /* namespace */
+
+/* As the standard wants it of a parameter that changes programs: what moves with it is not written by
+ * the plug-in but read by the host. */
+void show(Vst3 &plugin, int parameter, double value) {
+    int32_t flags = 0;
+    plugin.shown.change(parameter, value, [&](int each, bool is_other) {
+        if (each == parameter || !is_other) return;
+        plugin.unread[each] = true;
+        flags |= V3_RESTART_PARAM_VALUES_CHANGED;
+    });
+    if (flags && plugin.handler) v3_cpp_obj(plugin.handler)->restart_component(plugin.handler, flags);
+}
 
 const v3_edit_controller_cpp controller = {
     unknown<CONTROLLER>(),

@@ -1,4 +1,4 @@
-"""The plug-in as projects use it: many at once, automated, at other rates, by old and wrong states."""
+"""The plug-in as projects use it: many at once, automated, at other rates, by damaged states."""
 
 import random
 from concurrent.futures import ThreadPoolExecutor
@@ -107,8 +107,12 @@ def test_states_that_someone_damaged_do_no_harm(play, shown, tmp_path):
             data[at : at + chance.randrange(9)] = chance.choice((*odd, chance.randbytes(4)))
         (tmp_path / f"{number}").write_bytes(data)
         lines.append(f"{64 * number} load {tmp_path / str(number)}")
+    heading, *rest = kept.decode().splitlines()
+    wrong = [f"{line.split('=')[0]}={chance.choice(('1e308', '-1e308', '999'))}" for line in rest]
+    (tmp_path / "last").write_text("\n".join([heading, *wrong]))
+    lines.append(f"{64 * 300} load {tmp_path / 'last'}")
     samples, reports = play(["0 midi 144 69 100", *lines], 64 * 300 + 4000, block=64)
-    assert len(reports["loaded"]) == 300
+    assert len(reports["loaded"]) == 301
     assert np.abs(samples).max() <= 1.0
     limits = {each.number: (each.lo, each.hi) for each in shown.values()}
     for number, value in reported_values(reports).items():

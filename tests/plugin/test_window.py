@@ -14,7 +14,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
 ]
-PREV, NEXT = (40, 296), (200, 296)  # places in the chooser of presets
+PREV, NEXT = (40, 296), (150, 296)  # places in the chooser of presets
 WOOD, PAPER = (0xE2, 0xBF, 0x8D), (0xF7, 0xF3, 0xEA)
 TAB, RIGHT, END = 23, 114, 115  # codes of keys
 TRIES = 100
@@ -131,9 +131,10 @@ def test_it_is_played_by_mouse_and_keys_and_the_host_hears_of_it(window, shown):
     assert window("play 1")[2] > 1  # the preset, and what it moves
     window(f"click {PREV[0]} {PREV[1]}")
     assert becomes(window, preset.number, preset.default)
-    for code in (TAB, END):
+    for code in (TAB, RIGHT, TAB, END):
         window(f"key {code}")
     assert becomes(window, mapping.number, len(mapping.choices) - 1)
+    assert becomes(window, shown["/playing/articulation"].number, 1.0)
     window(f"key {RIGHT}")  # there is none after the last
     assert not becomes(window, mapping.number, len(mapping.choices))
 

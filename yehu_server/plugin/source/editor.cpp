@@ -18,10 +18,10 @@ constexpr uint32_t STRING_COLOURS[] = {INNER, OUTER};
 constexpr float LOOP_X = 34, BRIDGE_X = 420, LANES[] = {104, 136}, MIDDLE = 120;
 constexpr float PANEL_X = 512, PANEL_WIDTH = 156;
 constexpr float GAUGES_Y = 112, GAUGE_HEIGHT = 33;
-constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 220, CHOOSER_WIDTH = 216, CHOOSERS_Y = 276, CHOOSER_HEIGHT = 40;
-constexpr float ARROW = 26, ZOOM_X = 628, ZOOM_Y = 20;
+constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 165, CHOOSER_WIDTH = 161, CHOOSERS_Y = 276, CHOOSER_HEIGHT = 40;
+constexpr float ARROW = 20, ZOOM_X = 628, ZOOM_Y = 20;
 
-constexpr int CHOSEN[] = {PRESET, MAPPING, TUNING};
+constexpr int CHOSEN[] = {PRESET, ARTICULATION, MAPPING, TUNING};
 constexpr double MIN_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from one snapshot to the next */
 constexpr float SWING = 26, HAIR_LENGTH = 108;
 constexpr double SILENT = 1e-4, CERTAIN = 0.8, TWICE = 1.5; /* as the page has them */

@@ -1,5 +1,5 @@
-/* The plug-in's own window: strings, bow and fingers as they move, what is heard, and preset, mapping
- * and tuning to choose. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
+/* The plug-in's own window: strings, bow and fingers as they move, what is heard, and preset,
+ * articulation, mapping and tuning to choose. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
  * is nothing while it is closed: no memory, window or timer.
  */
 #ifndef YEHU_EDITOR_HPP
@@ -41,7 +41,7 @@ public:
     void key(Key key);
 
 private:
-    static constexpr int CHOOSERS = 3, SHAPES = 8, POINTS = 64, STRINGS = 2;
+    static constexpr int CHOOSERS = 4, SHAPES = 8, POINTS = 64, STRINGS = 2;
 
     bool follow();
     void put();
@@ -61,7 +61,7 @@ private:
     Canvas canvas;
     int wide = WIDTH, high = HEIGHT;
     bool is_stale = true, is_at_rest = false;
-    int focus = 0, chosen[CHOOSERS] = {-1, -1, -1};
+    int focus = 0, chosen[CHOOSERS] = {-1, -1, -1, -1};
     struct yehu_snapshot seen = {};
     float shapes[STRINGS][SHAPES][POINTS] = {}; /* m; the latest at `latest` */
     int latest = 0;

@@ -139,6 +139,21 @@ def test_it_is_played_by_mouse_and_keys_and_the_host_hears_of_it(window, shown):
     assert not becomes(window, mapping.number, len(mapping.choices))
 
 
+def test_sliders_are_moved_by_mouse_and_keys_and_have_a_usual_value(window, shown):
+    vibrato, gain = shown["/playing/vibrato"], shown["/output/gain"]
+    window("open")
+    window("click 108 205")  # at four fifths of the first
+    assert becomes(window, vibrato.number, 80.0)
+    assert becomes(window, shown["/preset"].number, 0.0)  # it is none of its values
+    assert window("play 1")[2] == 2
+    window("click 108 205")
+    assert becomes(window, vibrato.number, vibrato.default)
+    assert becomes(window, shown["/preset"].number, shown["/preset"].default)
+    for code in (TAB, TAB, TAB, END):
+        window(f"key {code}")
+    assert becomes(window, gain.number, gain.hi)
+
+
 def test_closed_it_has_no_timer_and_opens_again(window):
     assert window("play 1")[1] == 0
     for _ in range(3):

@@ -18,6 +18,7 @@ from yehu_server.live.page.examples import examples
 from yehu_server.live.page.facts import facts, module
 from yehu_server.playing.calibration import calibration_key
 from yehu_server.playing.calibration_store import SHIPPED as CALIBRATIONS
+from yehu_server.plugin.carried import carried
 from yehu_server.plugin.parameters import parameters
 from yehu_server.surfaces.catalogue import SURFACES, is_up_to_date
 
@@ -68,5 +69,5 @@ def numbers() -> str:
     """The numbers by which hosts know parameters: those there are stay, new ones come last."""
     kept = NUMBERS.read_text(encoding="utf-8")
     known = {line.split()[0] for line in kept.splitlines()}
-    new = [each for each in parameters((), (), ()) if each.address not in known]
+    new = [each for each in parameters(carried()) if each.address not in known]
     return kept + "".join(f"{each.address} {each.number}\n" for each in new)

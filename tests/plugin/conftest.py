@@ -19,7 +19,7 @@ HEADERS = Path("/usr/share/dpf/distrho/src")
 @pytest.fixture(scope="session")
 def shown():
     """All parameters by address."""
-    return {each.address: each for each in parameters(*carried().names)}
+    return {each.address: each for each in parameters(carried())}
 
 
 @pytest.fixture(scope="session")

@@ -15,6 +15,14 @@ class Mapper(ctypes.Structure):
     _fields_ = (("handle", ctypes.c_void_p), ("map", Map))
 
 
+Request = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_uint32, ctypes.c_float)
+REQUESTS = b"http://kx.studio/ns/lv2ext/control-input-port-change-request"
+
+
+class Requester(ctypes.Structure):
+    _fields_ = (("handle", ctypes.c_void_p), ("change", Request))
+
+
 class Feature(ctypes.Structure):
     _fields_ = (("uri", ctypes.c_char_p), ("data", ctypes.c_void_p))
 
@@ -39,7 +47,10 @@ class Descriptor(ctypes.Structure):
 
 
 class Plugin:
-    """An instance; `ports` has values of parameters, by number of the port."""
+    """An instance; `ports` has values of parameters, by number of the port.
+
+    What it asks for is set, and is in `requests`, by port.
+    """
 
     def __init__(self, library, rate, ports):
         self._uris: dict[bytes, int] = {}
@@ -47,7 +58,13 @@ class Plugin:
         self._mapper = Mapper(None, self._map)
         mapper = ctypes.cast(ctypes.pointer(self._mapper), ctypes.c_void_p)
         self._feature = Feature(b"http://lv2plug.in/ns/ext/urid#map", mapper)
-        features = (ctypes.c_void_p * 2)(ctypes.addressof(self._feature), None)
+        self.requests: dict[int, float] = {}
+        self._request = Request(self._set)
+        self._requester = Requester(None, self._request)
+        requester = ctypes.cast(ctypes.pointer(self._requester), ctypes.c_void_p)
+        self._second = Feature(REQUESTS, requester)
+        places = map(ctypes.addressof, (self._feature, self._second))
+        features = (ctypes.c_void_p * 3)(*places, None)
         entry = ctypes.CDLL(str(library)).lv2_descriptor
         entry.restype = ctypes.POINTER(Descriptor)
         self._plugin = entry(0).contents
@@ -58,6 +75,11 @@ class Plugin:
         for number, value in (self.ports | {3: self.latency}).items():
             self._plugin.connect(self._handle, number, value.ctypes.data)
         self._plugin.activate(self._handle)
+
+    def _set(self, _, port, value):
+        self.requests[port] = value
+        self.ports[port][0] = value
+        return 0
 
     def close(self):
         self._plugin.cleanup(self._handle)

@@ -4,6 +4,11 @@ import ctypes
 
 import numpy as np
 
+from yehu_server.core.midi.events import SET
+from yehu_server.params.table import TABLE
+from yehu_server.plugin.carried import carried
+from yehu_server.plugin.parameters import parameters
+
 PHRASE = [
     (0, 0xB0, 11, 110),
     (4800, 0x90, 69, 96),
@@ -48,8 +53,18 @@ def played(library, memory, messages, frames):
 
 
 def by_library(path, messages, frames, rate=48000.0):
-    """What the library for C programs plays of messages [shape=(frames, 2)]."""
-    return played(*prepared(path, rate), messages, frames)
+    """What the library for C programs plays of messages, by the plug-in's first values.
+
+    Returns samples [shape=(frames, 2)].
+    """
+    library, memory = prepared(path, rate)
+    word, number = ctypes.c_int64, ctypes.c_double
+    library.yehu_post.argtypes = [ctypes.c_void_p, word, word, word, number, number]
+    for each in parameters(carried()):
+        if each.index >= 0 and each.default != TABLE[each.index].default:
+            at = memory.ctypes.data
+            library.yehu_post(at, 0, SET, each.index, each.default, 0.0)
+    return played(library, memory, messages, frames)
 
 
 def frequency(samples, rate):

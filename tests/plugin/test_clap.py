@@ -52,7 +52,7 @@ def test_keys_that_choose_articulations_have_names(play, shown):
     assert f"last-{ARTICULATIONS[-1].name}" in reports
 
 
-def test_a_preset_moves_what_it_names_and_tells_the_host(play, shown):
+def test_a_preset_moves_what_it_names_and_reports_it(play, shown):
     hall = shown["/preset"].choices.index("hall")
     _, reports = play([*PLAYS, f"100 set {shown['/preset'].number} {hall}"], 2000)
     moved = {int(number): value for number, value in reports["moved"]}
@@ -61,6 +61,26 @@ def test_a_preset_moves_what_it_names_and_tells_the_host(play, shown):
     values = {int(number): value for number, value, _ in reports["value"]}
     assert values[shown["/room/decay"].number] == preset["/room/decay"]
     assert values[shown["/playing/speed"].number] == shown["/playing/speed"].default
+
+
+def test_an_old_value_that_comes_again_does_not_undo_a_preset(play, shown):
+    preset, plucks = shown["/preset"], shown["/playing/pizzicato"].number
+    choice = preset.choices.index("pizzicato")
+    chosen = [*PLAYS, f"1000 set {preset.number} {choice}"]
+
+    def last(*lines, frames=4000):
+        _, reports = play([*chosen, *lines], frames, block=128)
+        found = {int(number): value for number, value, _ in reports["value"]}
+        return found[plucks], found[preset.number]
+
+    assert last(f"1010 set {plucks} 0") == (1.0, choice)  # not heard of yet
+    again = [f"{frame} set {plucks} 0" for frame in range(0, 4000, 128)]
+    _, reports = play([*again[:8], *chosen[1:], *again[8:]], 4000, block=128)
+    assert dict(map(tuple, (row[:2] for row in reports["value"])))[plucks] == 1.0
+    # Later it is a command; the preset is none as long as it holds.
+    assert last(f"2000 set {plucks} 0") == (0.0, 0.0)
+    assert last(f"2000 set {plucks} 0", f"3000 set {plucks} 1") == (1.0, choice)
+    assert last(f"2000 flush {plucks} 0") == (0.0, 0.0)
 
 
 def test_state_opens_in_a_new_instance(play, shown, tmp_path):
@@ -82,6 +102,9 @@ def test_state_opens_in_a_new_instance(play, shown, tmp_path):
     values = {int(number): value for number, value, _ in play([f"0 load {state}"], 64)[1]["value"]}
     assert values[shown["/playing/press"].number] == 2.5
     assert values[shown["/mapping"].number] == 0.0
+    state.write_text("yehu 1\n/preset=vibrato, changed\n/playing/vibrato=40\n")
+    assert play([f"0 load {state}", f"1 save {state}"], 64)[1]["saved"] == [[1.0]]
+    assert "/preset=vibrato, changed\n" in state.read_text()
     state.write_text("RIFF")
     assert play([f"0 load {state}"], 64)[1]["loaded"] == [[0.0]]
 
@@ -98,9 +121,10 @@ def test_a_bounce_sounds_like_the_last_one(play, shown):
     assert not np.array_equal(samples[:FRAMES], samples[100000:])
 
 
-def test_notes_with_expressions_bend_one_by_one_and_pedals_hold_them(play):
+def test_notes_with_expressions_bend_one_by_one_and_pedals_hold_them(play, shown):
+    straight = [f"0 set {shown['/playing/vibrato'].number} 0"]
     notes = ["0 on 7 0 69 0.7", "24000 express 2 7 1.5", "40000 off 7 0 69", "44000 on 8 0 69 0.7"]
-    samples, _ = play(notes, 64000)
+    samples, _ = play(straight + notes, 64000)
     bent, plain = (frequency(samples[a : a + 10000], 48000) for a in (28000, 52000))
     assert 1200.0 * np.log2(bent / plain) == pytest.approx(150.0, abs=8.0)
     held, _ = play(["0 midi 176 64 127", *notes[:1], "24000 off -1 0 69"], 64000)

@@ -9,10 +9,8 @@ import pytest
 from plugin.lv2_host import Plugin
 from plugin.sounds import FRAMES, PHRASE, by_library, frequency
 
-from yehu_server.plugin.lv2_texts import (
-    FIRST_PARAMETER,
-    in_lv2,
-)
+from yehu_server.plugin.carried import carried
+from yehu_server.plugin.lv2_texts import FIRST_PARAMETER, in_lv2
 
 slow = pytest.mark.slow
 
@@ -38,12 +36,32 @@ def test_it_plays_the_samples_of_the_library(built, library, ports):
 @slow
 def test_its_ports_are_its_state(built, ports):
     values, places = ports
-    changed = values | {places["/mapping"]: 2.0, places["/room/level"]: 0.0}
+    changed = values | {
+        places["/mapping"]: 2.0,
+        places["/room/level"]: 0.0,
+        places["/playing/vibrato"]: 0.0,
+    }
     plugin = Plugin(built / "Yehu.lv2" / "Yehu.so", 96000.0, changed)
     bent = [(0, 0x91, 69, 100), (100, 0xE1, 0, 80)]  # by MPE: 12 of 48 semitones
     samples = plugin.play(bent, 96000, 1024)
     assert frequency(samples[48000:], 96000) == pytest.approx(880.0, rel=0.006)
     assert plugin.latency[0] == 64.0
+    plugin.close()
+
+
+@slow
+def test_what_a_mapping_moves_is_asked_of_the_host(built, shown, ports):
+    values, places = ports
+    plugin = Plugin(built / "Yehu.lv2" / "Yehu.so", 48000.0, values)
+    mapping, data = places["/mapping"], carried()
+    name = next(name for name, starts in data.starts.items() if starts)
+    plugin.ports[mapping][0] = shown["/mapping"].choices.index(name)
+    plugin.play([], 512, 128)
+    moved = {places[address]: value for address, value in data.starts[name].items()}
+    assert plugin.requests == pytest.approx(moved)
+    plugin.ports[mapping][0] = 0.0  # and back
+    plugin.play([], 512, 128)
+    assert plugin.requests == pytest.approx({port: values[port] for port in moved})
     plugin.close()
 
 

@@ -7,8 +7,11 @@ import pytest
 
 from yehu_server.ahead import interface
 from yehu_server.ahead.header import header as header_of_functions
+from yehu_server.params.articulations import ARTICULATIONS
+from yehu_server.params.preset_file import FIRST_LIVE
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import TABLE
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.plugin import build as building
 from yehu_server.plugin.carried import MAPPINGS, carried
 from yehu_server.plugin.header import header
@@ -37,16 +40,31 @@ def test_numbers_and_order_of_choices_are_for_ever(shown):
 
 def test_every_parameter_of_the_table_is_there_as_it_is(shown):
     assert set(shown) - set(CHOICES) == {param.address for param in TABLE} - LEFT_OUT
+    first = Presets(user_first=False).find(FIRST_LIVE).values
     for index, param in enumerate(TABLE):
         assert param.curve in (Curve.LIN, Curve.EXP)
         if param.address in LEFT_OUT:
             continue
         each = shown[param.address]
+        hi = len(ARTICULATIONS) - 1 if param.address == "/playing/articulation" else param.hi
         found = each.index, each.lo, each.hi, each.default
-        assert found == (index, param.lo, param.hi, param.default)
+        assert found == (index, param.lo, hi, first.get(param.address, param.default))
         assert each.is_exponential == (param.curve is Curve.EXP)
         assert (each.steps > 0) == param.is_choice
         assert each.unit == ("" if param.unit == "1" else param.unit)
+
+
+def test_articulations_are_a_list_of_their_names(shown):
+    names = tuple(each.name for each in ARTICULATIONS)
+    assert shown["/playing/articulation"].choices == names
+    assert shown["/playing/articulation"].steps == len(names) - 1
+
+
+def test_it_begins_as_the_page_and_the_server(shown):
+    preset = shown["/preset"]
+    assert preset.choices[int(preset.default)] == FIRST_LIVE
+    page = (HERE.parents[1] / "web" / "views" / "sounds.js").read_text(encoding="utf-8")
+    assert f'AT_FIRST = isServed ? [] : ["{FIRST_LIVE}", ' in page
 
 
 def test_names_numbers_and_symbols_are_of_one_parameter_each(shown):
@@ -63,7 +81,7 @@ def test_the_header_has_each_parameter_and_preset(shown):
     for each in shown.values():
         assert f"{{{each.number}u, {each.index}, {each.steps}, " in text
     assert "static const Values presets[]" in text
-    assert text == header(parameters(*carried().names), carried())  # the same each time
+    assert text == header(parameters(carried()), carried())  # the same each time
 
 
 @pytest.mark.parametrize("name", building.COMMON[1:])

@@ -46,6 +46,51 @@ def raw(plugin, name):
     return next(each for each in plugin._parameters if each.name == name)
 
 
+def choose(plugin, preset):
+    choices = plugin.parameters["preset"].valid_values
+    raw(plugin, "Preset").raw_value = choices.index(preset) / (len(choices) - 1)
+
+
+def test_a_preset_reaches_the_host_and_is_not_undone_by_it(plugin):
+    assert raw(plugin, "Preset").string_value == "vibrato"
+    bowed = level_db(played(plugin)[20000:28000])
+    choose(plugin, "pizzicato")
+    assert raw(plugin, "Pizzicato").raw_value == 1.0
+    for _ in range(2):  # before each it sends all that it has
+        assert level_db(played(plugin)[20000:28000]) < bowed - 20.0
+    raw(plugin, "Pizzicato").raw_value = 0.0
+    assert raw(plugin, "Preset").string_value == "pizzicato, changed"
+    assert level_db(played(plugin)[20000:28000]) > bowed - 3.0
+    assert raw(plugin, "Preset").raw_value == 0.0
+    choose(plugin, "pizzicato")
+    assert raw(plugin, "Pizzicato").raw_value == 1.0
+
+
+def test_a_host_with_a_table_of_its_own_does_not_undo_a_preset(built):
+    daw = pytest.importorskip("dawdreamer", reason="there is no dawdreamer")
+    engine = daw.RenderEngine(48000, BLOCK)
+    plugin = engine.make_plugin_processor("yehu", str(built / "Yehu.vst3"))
+    engine.load_graph([(plugin, [])])
+    plugin.add_midi_note(69, 96, 0.0, 0.6)
+    numbers = {each["name"]: each["index"] for each in plugin.get_parameters_description()}
+
+    def level():
+        engine.render(0.7)
+        return level_db(engine.get_audio().T[20000:28000])
+
+    bowed = level()
+    plugin.set_parameter(numbers["Preset"], 7.0 / 12.0)
+    for _ in range(3):
+        assert level() < bowed - 20.0
+        assert plugin.get_parameter_text(numbers["Pizzicato"]) == "1"
+        assert plugin.get_parameter_text(numbers["Preset"]) == "pizzicato"
+    plugin.set_parameter(numbers["Pizzicato"], 1.0)
+    assert level() < bowed - 20.0
+    plugin.set_parameter(numbers["Pizzicato"], 0.0)
+    assert level() > bowed - 3.0
+    assert plugin.get_parameter_text(numbers["Preset"]) == "pizzicato, changed"
+
+
 def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, shown):
     import pedalboard
 
@@ -55,7 +100,7 @@ def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, show
     quiet = played(plugin)
     assert level_db(quiet) < -45.0
     other = pedalboard.load_plugin(str(built / "Yehu.vst3"))
-    assert raw(other, "Preset").string_value == "none"
+    assert raw(other, "Preset").string_value == "vibrato"
     other.raw_state = plugin.raw_state
     for name, unit in wanted.items():
         assert raw(other, name).raw_value == pytest.approx(unit)

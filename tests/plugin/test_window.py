@@ -14,7 +14,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
 ]
-PREV, NEXT = (40, 296), (200, 296)  # places in the chooser of presets
+PREV, NEXT = (40, 296), (150, 296)  # places in the chooser of presets
 WOOD, PAPER = (0xE2, 0xBF, 0x8D), (0xF7, 0xF3, 0xEA)
 TAB, RIGHT, END = 23, 114, 115  # codes of keys
 TRIES = 100
@@ -127,15 +127,31 @@ def test_it_is_played_by_mouse_and_keys_and_the_host_hears_of_it(window, shown):
     preset, mapping = shown["/preset"], shown["/mapping"]
     window("open")
     window(f"click {NEXT[0]} {NEXT[1]}")
-    assert becomes(window, preset.number, 1.0)
+    assert becomes(window, preset.number, preset.default + 1)
     assert window("play 1")[2] > 1  # the preset, and what it moves
     window(f"click {PREV[0]} {PREV[1]}")
-    assert becomes(window, preset.number, 0.0)
-    for code in (TAB, END):
+    assert becomes(window, preset.number, preset.default)
+    for code in (TAB, RIGHT, TAB, END):
         window(f"key {code}")
     assert becomes(window, mapping.number, len(mapping.choices) - 1)
+    assert becomes(window, shown["/playing/articulation"].number, 1.0)
     window(f"key {RIGHT}")  # there is none after the last
     assert not becomes(window, mapping.number, len(mapping.choices))
+
+
+def test_sliders_are_moved_by_mouse_and_keys_and_have_a_usual_value(window, shown):
+    vibrato, gain = shown["/playing/vibrato"], shown["/output/gain"]
+    window("open")
+    window("click 108 205")  # at four fifths of the first
+    assert becomes(window, vibrato.number, 80.0)
+    assert becomes(window, shown["/preset"].number, 0.0)  # it is none of its values
+    assert window("play 1")[2] == 2
+    window("click 108 205")
+    assert becomes(window, vibrato.number, vibrato.default)
+    assert becomes(window, shown["/preset"].number, shown["/preset"].default)
+    for code in (TAB, TAB, TAB, END):
+        window(f"key {code}")
+    assert becomes(window, gain.number, gain.hi)
 
 
 def test_closed_it_has_no_timer_and_opens_again(window):
@@ -175,8 +191,10 @@ def test_a_vst3_host_hears_of_a_choice(built, display, shown, tmp_path):
         stdout=subprocess.PIPE,
         check=True,
     )
-    opened, closed, edits, number, value, kept, width = map(float, done.stdout.split())
+    opened, closed, edits, number, value, kept, width, restarted = map(float, done.stdout.split())
     assert (opened, closed, edits) == (1, 0, 1)
     assert number == shown["/preset"].number
-    assert value == kept == pytest.approx(1.0 / shown["/preset"].steps, abs=1e-6)
+    wanted = (shown["/preset"].default + 1) / shown["/preset"].steps
+    assert value == kept == pytest.approx(wanted, abs=1e-6)
+    assert restarted == 1 << 2  # values of parameters have changed
     assert width == 1020

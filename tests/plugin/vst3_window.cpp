@@ -3,7 +3,7 @@
  *     vst3_window LIBRARY X Y     where to press
  *
  * Prints timers while it is open and after, edits that were reported to it, the number and the value of the
- * last, the value that the controller shows, and the width of the inner window.
+ * last, the value that the controller shows, the width of the inner window, and flags of restarts.
  */
 #include <dlfcn.h>
 #include <stdio.h>
@@ -17,7 +17,7 @@
 #include <xcb/xcb.h>
 
 namespace {
-int timers, edits;
+int timers, edits, restarted;
 v3_timer_handler **timer;
 v3_param_id edited;
 double value;
@@ -33,7 +33,7 @@ v3_result V3_API stop(void *, v3_timer_handler **) { return timers--, V3_OK; }
 v3_result V3_API resize(void *, v3_plugin_view **, v3_view_rect *) { return V3_FALSE; }
 v3_result V3_API mark(void *, v3_param_id) { return V3_OK; }
 v3_result V3_API perform(void *, v3_param_id id, double to) { return edits++, edited = id, value = to, V3_OK; }
-v3_result V3_API restart(void *, int32_t) { return V3_OK; }
+v3_result V3_API restart(void *, int32_t flags) { return restarted |= flags, V3_OK; }
 
 const v3_run_loop_cpp loop_table = {unknown, {no_events, none, start, stop}};
 const v3_plugin_frame_cpp frame_table = {unknown, {resize}};
@@ -93,8 +93,8 @@ int main(int words, char **word) {
     }
     v3_cpp_obj(view)->removed(view);
     v3_cpp_obj_unref(view);
-    printf("%d %d %d %u %g %g %d\n", open_timers, timers, edits, edited, value,
-           v3_cpp_obj(controller)->get_parameter_normalised(controller, edited), width);
+    printf("%d %d %d %u %g %g %d %d\n", open_timers, timers, edits, edited, value,
+           v3_cpp_obj(controller)->get_parameter_normalised(controller, edited), width, restarted);
     v3_cpp_obj_unref(controller);
     free(tree);
     xcb_disconnect(x);

@@ -11,15 +11,13 @@ from yehu_server.cli.arguments import add_options
 from yehu_server.cli.converters import number_within, whole_within
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
+from yehu_server.params.preset_file import FIRST_LIVE
 from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, assignment
 
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.tuning import Tuning
-
-# The preset of live playing where nothing is said. Compared in phrases (docs/playing.md).
-FIRST_LIVE = "vibrato"
 
 
 def add_playing(group: Any) -> None:

@@ -16,6 +16,8 @@ from yehu_server.util.documents import MAX_ERRORS, Document
 from yehu_server.util.values import whole, words
 
 VERSION = 1
+# The preset of live playing where nothing is said. Compared in phrases (docs/playing.md).
+FIRST_LIVE = "vibrato"
 PROGRAMS = 128  # of MIDI, counted from 1
 MAX_REMARKS = 10
 # A preset may have all parameters except those that the player moves as notes sound.

@@ -1,4 +1,4 @@
-"""Build the plug-in: one file or folder for each format."""
+"""Build the plug-in: one file or folder for each format, and expression maps."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from yehu_server.ahead.build import HAVE_IT, run_compiler, zig
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.plugin.bundles import put_clap, put_lv2, put_vst3
 from yehu_server.plugin.carried import carried
+from yehu_server.plugin.expression_maps import put_expression_maps
 from yehu_server.plugin.header import header
 from yehu_server.plugin.objects import make_objects, object_file
 from yehu_server.plugin.parameters import parameters
@@ -19,9 +20,9 @@ from yehu_server.plugin.targets import ALL, NAMES, X11, System, systems_of
 from yehu_server.util.hints import install_command
 
 SOURCE = Path(__file__).parent / "source"
-COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "text.cpp")
+COMMON = ("engine.cpp", "instrument.cpp", "resampler.cpp", "settings.cpp", "text.cpp")
 CLAP = ("clap.cpp", "clap_notes.cpp")
-VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp")
+VST3 = ("vst3.cpp", "vst3_processor.cpp", "vst3_controller.cpp", "vst3_notes.cpp")
 # Of the window, where a system has one (`System.window`).
 EDITOR = ("canvas.cpp", "editor.cpp")
 HEADER_FILE = "carried.h"
@@ -60,8 +61,8 @@ FORMATS = (
 def build(folder: Path, target: str) -> list[Path]:
     """Build all formats for a `--target` into a folder; for several, into a folder for each.
 
-    Returns the files and bundles. Raises YehuError where something is missing to build with, or the
-    folder cannot be written.
+    Returns the files and bundles, and expression maps. Raises YehuError where something is missing
+    to build with, or the folder cannot be written.
 
     `target`: one of `targets.NAMES`, or `targets.ALL`.
     """
@@ -105,16 +106,17 @@ def check_headers(target: str) -> None:
 def write_header(work: Path) -> None:
     """Write the header of parameters and what is carried into a folder."""
     data = carried()
-    (work / HEADER_FILE).write_text(header(parameters(*data.names), data))
+    (work / HEADER_FILE).write_text(header(parameters(data), data))
 
 
 def _put(folder: Path, name: str, work: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     systems = systems_of(name)
-    return [
+    made = [
         each.put(folder, {system: link(each, system, work) for system in systems})
         for each in FORMATS
     ]
+    return made + put_expression_maps(folder, carried())
 
 
 def compiler_of(system: System) -> list[str]:

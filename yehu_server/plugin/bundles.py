@@ -50,7 +50,7 @@ def put_lv2(folder: Path, libraries: Mapping[System, Path]) -> Path:
     path = folder / f"{NAME}.lv2"
     path.mkdir(exist_ok=True)
     data = carried()
-    shown = parameters(*data.names)
+    shown = parameters(data)
     system = next(iter(libraries))
     ending = system.ending
     (path / f"{NAME}{ending}").write_bytes(_joined(libraries))

@@ -35,6 +35,19 @@ EXPRESSIONS = {
     "brightness": (0xB0, 74, 64, 0.0, 1.0),
     "pressure": (0xD0, 0, 0, 0.0, 1.0),
 }
+# Parameters that the wrappers ask for, and those that the window has sliders of.
+PLACES = {
+    "RELEASE": "/playing/release",
+    "DECAY": "/room/decay",
+    "VIBRATO": "/playing/vibrato",
+    "VIBRATO_RATE": "/playing/vibrato_rate",
+    "VIBRATO_DELAY": "/playing/vibrato_delay",
+    "DYNAMICS": "/playing/dynamics",
+    "BOW_POSITION": "/playing/bow_position",
+    "PRESSURE_OF_BOW": "/playing/pressure",
+    "ROOM_LEVEL": "/room/level",
+    "GAIN": "/output/gain",
+}
 OUTLINE = """\
 /* The parameters of the plug-in, and the presets, mappings and tunings it carries. Generated. */
 #ifndef YEHU_CARRIED_H
@@ -70,6 +83,7 @@ static const Parameter parameters[] = {{
 {parameters}
 }};
 enum {{ PARAMETERS = {count} }};
+enum {{ NO_PRESET = 0 }}; /* a value of PRESET */
 enum {{ PRESET = {preset}, MAPPING = {mapping}, TUNING = {tuning}, CHANCE = {chance} }};
 enum {{ ARTICULATION = {articulation}, ARTICULATIONS = {articulations} }};
 /* Of each mapping the key that chooses the first articulation, others upwards; or -1. */
@@ -156,7 +170,7 @@ def _parameter(index: int, each: HostParameter) -> str:
 
 def _places(shown: Sequence[HostParameter]) -> Iterable[str]:
     """What the wrappers ask of certain parameters."""
-    for name, address in (("RELEASE", "/playing/release"), ("DECAY", "/room/decay")):
+    for name, address in PLACES.items():
         place = next(i for i, each in enumerate(shown) if each.address == address)
         yield f"enum {{ {name} = {place} }};"
 

@@ -36,7 +36,8 @@ PLUGIN = """\
     lv2:minorVersion {minor} ;
     lv2:microVersion {micro} ;
     lv2:requiredFeature urid:map ;
-    lv2:optionalFeature lv2:hardRTCapable ;
+    lv2:optionalFeature lv2:hardRTCapable ,
+        <http://kx.studio/ns/lv2ext/control-input-port-change-request> ;
     lv2:port [
         a lv2:InputPort , atom:AtomPort ;
         atom:bufferType atom:Sequence ;

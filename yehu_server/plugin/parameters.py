@@ -7,12 +7,15 @@ the address, which a parameter keeps as long as it is there (a test holds the nu
 from __future__ import annotations
 
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.params.articulations import ARTICULATIONS, LAST
+from yehu_server.params.articulations import ARTICULATIONS
+from yehu_server.params.preset_file import FIRST_LIVE
 from yehu_server.params.spec import Curve, Param
 from yehu_server.params.table import TABLE
+from yehu_server.plugin.carried import Carried
 
 # A plug-in is a part of one player.
 LEFT_OUT = {"/playing/section"}
@@ -53,22 +56,23 @@ class HostParameter:
 
 
 ARTICULATION = "/playing/articulation"
-# Hosts keep the numbers: those that nothing has yet are there, by their numbers.
-ARTICULATION_NAMES = tuple(
-    ARTICULATIONS[number].name if number < len(ARTICULATIONS) else str(number)
-    for number in range(LAST + 1)
-)
+ARTICULATION_NAMES = tuple(each.name for each in ARTICULATIONS)
 
 
-def parameters(
-    presets: tuple[str, ...], mappings: tuple[str, ...], tunings: tuple[str, ...]
-) -> list[HostParameter]:
+def parameters(data: Carried) -> list[HostParameter]:
     """List all parameters: the choices first, then those of the table, what one plays by before.
 
-    `presets`, `mappings`, `tunings`: names; the first of each is the one to begin with.
+    It begins with the preset of live playing, and with the first mapping and tuning.
     """
+    presets, mappings, tunings = data.names
     choices = [
-        _choice(PRESET, "Preset", presets, "Sets the parameters that the preset names."),
+        _choice(
+            PRESET,
+            "Preset",
+            presets,
+            "Sets the parameters that the preset names; none, as soon as one of them is changed.",
+            default=presets.index(FIRST_LIVE),
+        ),
         _choice(MAPPING, "Mapping", mappings, "What keys and controllers of MIDI move."),
         _choice(TUNING, "Tuning", tunings, "The pitch of each key."),
         _choice(
@@ -80,7 +84,8 @@ def parameters(
             default=1,
         ),
     ]
-    rows = [_of_table(param) for param in TABLE if param.address not in LEFT_OUT]
+    first = data.presets[FIRST_LIVE]
+    rows = [_of_table(param, first) for param in TABLE if param.address not in LEFT_OUT]
     return choices + sorted(rows, key=lambda param: param.group != "Playing")
 
 
@@ -93,23 +98,26 @@ def _choice(
     )
 
 
-def _of_table(param: Param) -> HostParameter:
+def _of_table(param: Param, first: Mapping[str, float]) -> HostParameter:
     group, *rest = param.address.strip("/").split("/")
     words = " ".join(rest).replace("_", " ")
     name = words if group == "playing" else f"{group} {words}"
     # What the player moves; whoever moves it takes it over until the next note.
     name += " by hand" if param.player_controlled and group in HANDS else ""
+    # Messages may have numbers that nothing has yet; a list has what there is.
+    choices = ARTICULATION_NAMES if param.address == ARTICULATION else ()
+    hi = len(choices) - 1.0 if choices else param.hi
     return HostParameter(
         param.address,
         name[0].upper() + name[1:],
         group.capitalize(),
         "" if param.unit == "1" else param.unit,
         param.lo,
-        param.hi,
-        param.default,
+        hi,
+        first.get(param.address, param.default),
         param.doc,
         index=INDEX[param.address],
-        steps=round(param.hi - param.lo) if param.is_choice else 0,
+        steps=round(hi - param.lo) if param.is_choice else 0,
         is_exponential=param.curve is Curve.EXP,
-        choices=ARTICULATION_NAMES if param.address == ARTICULATION else (),
+        choices=choices,
     )

@@ -51,29 +51,44 @@ bool CLAP_ABI get_value(const clap_plugin_t *plugin, clap_id number, double *val
     return true;
 }
 
-bool CLAP_ABI to_text(const clap_plugin_t *, clap_id number, double value, char *text, uint32_t size) {
+bool CLAP_ABI to_text(const clap_plugin_t *plugin, clap_id number, double value, char *text, uint32_t size) {
     const int parameter = parameter_of(number);
     if (parameter < 0 || size == 0) return false;
-    write_value(parameter, value, text, size);
+    of(plugin).instrument.all().write(parameter, value, text, size);
     return true;
 }
 
 bool CLAP_ABI from_text(const clap_plugin_t *, clap_id number, const char *text, double *value) {
     const int parameter = parameter_of(number);
-    return parameter >= 0 && read_value(parameter, text, value);
+    return parameter >= 0 && Settings::read(parameter, text, value);
 }
 
-/* Report to the host parameters that moved as another one did. */
-void report_moved(Instrument &instrument, const clap_output_events_t *out) {
-    for (int i = 0; out && i < PARAMETERS; i++) {
-        if (!instrument.was_moved(i)) continue;
+bool push_gesture(const clap_output_events_t *out, int parameter, uint16_t type) {
+    const clap_event_param_gesture_t event = {{sizeof event, 0, CLAP_CORE_EVENT_SPACE_ID, type, 0}, parameters[parameter].number};
+    return out->try_push(out, &event.header);
+}
+
+/* Report to the host parameters that the user changed in the window, and those that moved with another
+ * one, which are not to be recorded. */
+void report(Plugin &plugin, const clap_output_events_t *out) {
+    Instrument &instrument = plugin.instrument;
+    const bool has_moved = out && instrument.has_moved();
+    for (int i = 0; has_moved && i < PARAMETERS; i++) {
+        const bool is_edited = instrument.was_edited(i);
+        if (!instrument.was_moved(i) && !is_edited) continue;
         clap_event_param_value_t event = {};
-        event.header = {sizeof event, 0, CLAP_CORE_EVENT_SPACE_ID, CLAP_EVENT_PARAM_VALUE, 0};
+        event.header = {sizeof event, 0, CLAP_CORE_EVENT_SPACE_ID, CLAP_EVENT_PARAM_VALUE, is_edited ? 0u : CLAP_EVENT_DONT_RECORD};
         event.param_id = parameters[i].number;
         event.note_id = event.port_index = event.channel = event.key = -1;
         event.value = instrument.value(i);
-        out->try_push(out, &event.header);
+        if (is_edited) push_gesture(out, i, CLAP_EVENT_PARAM_GESTURE_BEGIN);
+        if (out->try_push(out, &event.header)) instrument.know(i, event.value);
+        if (is_edited) push_gesture(out, i, CLAP_EVENT_PARAM_GESTURE_END);
     }
+    const bool has_other_names = watch_names(plugin);
+    if (has_moved) plugin.wants_values = true;
+    if (has_other_names) plugin.wants_names = true;
+    if (has_moved || has_other_names) plugin.host->request_callback(plugin.host);
 }
 
 void take(Instrument &instrument, const clap_event_header_t *event) {
@@ -117,10 +132,9 @@ void CLAP_ABI flush(const clap_plugin_t *plugin, const clap_input_events_t *in, 
         if (event->space_id != CLAP_CORE_EVENT_SPACE_ID || event->type != CLAP_EVENT_PARAM_VALUE) continue;
         const auto *changed = (const clap_event_param_value_t *)event;
         const int parameter = parameter_of(changed->param_id);
-        if (parameter >= 0) instrument.set(parameter, changed->value);
+        if (parameter >= 0) instrument.flush(parameter, changed->value);
     }
-    report_moved(instrument, out);
-    watch_names(of(plugin));
+    report(of(plugin), out);
 }
 
 const clap_plugin_params_t params = {count_parameters, get_parameter, get_value, to_text, from_text, flush};
@@ -144,6 +158,12 @@ bool CLAP_ABI save_state(const clap_plugin_t *plugin, const clap_ostream_t *stre
     return is_whole;
 }
 
+/* What is shown of a value may have changed with it, as a preset that is changed. */
+void rescan(const Plugin &plugin) {
+    const auto *shown = (const clap_host_params_t *)plugin.host->get_extension(plugin.host, CLAP_EXT_PARAMS);
+    if (shown && shown->rescan) shown->rescan(plugin.host, CLAP_PARAM_RESCAN_VALUES | CLAP_PARAM_RESCAN_TEXT);
+}
+
 bool CLAP_ABI load_state(const clap_plugin_t *plugin, const clap_istream_t *stream) {
     static const size_t most = 1 << 16;
     char *text = (char *)malloc(most);
@@ -155,9 +175,7 @@ bool CLAP_ABI load_state(const clap_plugin_t *plugin, const clap_istream_t *stre
     }
     const bool is_right = of(plugin).instrument.load(text, length);
     free(text);
-    const clap_host_t *host = of(plugin).host;
-    const auto *shown = (const clap_host_params_t *)host->get_extension(host, CLAP_EXT_PARAMS);
-    if (is_right && shown && shown->rescan) shown->rescan(host, CLAP_PARAM_RESCAN_VALUES);
+    if (is_right) rescan(of(plugin));
     return is_right;
 }
 
@@ -179,7 +197,11 @@ const clap_plugin_latency_t latency = {get_latency};
 bool CLAP_ABI init(const clap_plugin_t *) { return true; }
 bool CLAP_ABI start(const clap_plugin_t *) { return true; }
 void CLAP_ABI nothing(const clap_plugin_t *) {}
-void CLAP_ABI on_main_thread(const clap_plugin_t *plugin) { report_names(of(plugin)); }
+void CLAP_ABI on_main_thread(const clap_plugin_t *plugin) {
+    if (of(plugin).wants_names.exchange(false)) report_names(of(plugin));
+    if (of(plugin).wants_values.exchange(false)) rescan(of(plugin));
+}
+
 void CLAP_ABI reset(const clap_plugin_t *plugin) { of(plugin).instrument.reset(); }
 
 void CLAP_ABI destroy(const clap_plugin_t *plugin) {
@@ -206,8 +228,7 @@ clap_process_status CLAP_ABI process(const clap_plugin_t *plugin, const clap_pro
     for (uint32_t i = 0, count = in ? in->size(in) : 0; i < count; i++) take(instrument, in->get(in, i));
     float **out = block->audio_outputs[0].data32;
     instrument.process(out[0], out[1], block->frames_count);
-    report_moved(instrument, block->out_events);
-    watch_names(of(plugin));
+    report(of(plugin), block->out_events);
     return CLAP_PROCESS_CONTINUE;
 }
 

@@ -22,6 +22,7 @@ struct Plugin {
     clap_id timer;
     bool has_timer;
     std::atomic<double> named; /* the mapping whose keys the host knows the names of */
+    std::atomic<bool> wants_names, wants_values; /* reported to the host on its main thread */
 };
 
 inline Plugin &of(const clap_plugin_t *plugin) { return *(Plugin *)plugin->plugin_data; }
@@ -30,7 +31,7 @@ inline Plugin &of(const clap_plugin_t *plugin) { return *(Plugin *)plugin->plugi
 const void *note_extension(const char *id);
 /* From the thread that changes parameters: see whether keys have other names. Then, on the main
  * thread, report it to the host. */
-void watch_names(Plugin &plugin);
+bool watch_names(Plugin &plugin);
 void report_names(const Plugin &plugin);
 
 #ifdef YEHU_EDITOR

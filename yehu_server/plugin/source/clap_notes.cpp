@@ -48,10 +48,10 @@ const void *note_extension(const char *id) {
     return !strcmp(id, CLAP_EXT_NOTE_PORTS) ? (const void *)&ports : !strcmp(id, NAMES) ? &names : nullptr;
 }
 
-/* A mapping may have other keys. Hosts hear of it on their main thread alone. */
-void watch_names(Plugin &plugin) {
+/* A mapping may have other keys. */
+bool watch_names(Plugin &plugin) {
     const double mapping = plugin.instrument.value(MAPPING);
-    if (plugin.named.exchange(mapping) != mapping) plugin.host->request_callback(plugin.host);
+    return plugin.named.exchange(mapping) != mapping;
 }
 
 void report_names(const Plugin &plugin) {

@@ -18,10 +18,15 @@ constexpr uint32_t STRING_COLOURS[] = {INNER, OUTER};
 constexpr float LOOP_X = 34, BRIDGE_X = 420, LANES[] = {104, 136}, MIDDLE = 120;
 constexpr float PANEL_X = 512, PANEL_WIDTH = 156;
 constexpr float GAUGES_Y = 112, GAUGE_HEIGHT = 33;
-constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 220, CHOOSER_WIDTH = 216, CHOOSERS_Y = 276, CHOOSER_HEIGHT = 40;
-constexpr float ARROW = 26, ZOOM_X = 628, ZOOM_Y = 20;
+constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 165, CHOOSER_WIDTH = 161, CHOOSERS_Y = 276, CHOOSER_HEIGHT = 40;
+constexpr float ARROW = 20, ZOOM_X = 628, ZOOM_Y = 20;
 
-constexpr int CHOSEN[] = {PRESET, MAPPING, TUNING};
+constexpr float SLIDERS_X = 24, SLIDER_STEP = 119, SLIDER_WIDTH = 105, SLIDERS_Y = 187, SLIDER_HEIGHT = 28;
+constexpr int IN_A_ROW = 4, DOUBLE_TICKS = 12;
+constexpr double WHEEL_STEP = 0.02;
+
+constexpr int SLID[] = {VIBRATO, VIBRATO_RATE, VIBRATO_DELAY, GAIN, DYNAMICS, PRESSURE_OF_BOW, BOW_POSITION, ROOM_LEVEL};
+constexpr int CHOSEN[] = {PRESET, ARTICULATION, MAPPING, TUNING};
 constexpr double MIN_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from one snapshot to the next */
 constexpr float SWING = 26, HAIR_LENGTH = 108;
 constexpr double SILENT = 1e-4, CERTAIN = 0.8, TWICE = 1.5; /* as the page has them */
@@ -82,10 +87,37 @@ void Editor::choose(int chooser, int choice) {
     if (choice != (int)instrument.value(CHOSEN[chooser])) host.edit(host.owner, CHOSEN[chooser], choice);
 }
 
+int Editor::slider_at(float x, float y) const {
+    const float column = (x - SLIDERS_X) / SLIDER_STEP, row = (y - SLIDERS_Y) / SLIDER_HEIGHT;
+    const bool is_inside = column >= 0 && column < IN_A_ROW && row >= 0 && row < SLIDERS / IN_A_ROW;
+    return is_inside ? (int)column + IN_A_ROW * (int)row : -1;
+}
+
+void Editor::slide(int slider, double unit) {
+    const int parameter = SLID[slider];
+    const double value = from_unit(parameter, unit);
+    focus = CHOOSERS + slider, is_stale = true;
+    if (value != instrument.value(parameter)) host.edit(host.owner, parameter, value);
+}
+
+/* To where the mouse is. */
+void Editor::drag(int px, int) {
+    if (held < 0) return;
+    const float x = (float)px * WIDTH / (float)wide - SLIDERS_X - SLIDER_STEP * (float)(held % IN_A_ROW);
+    slide(held, x / SLIDER_WIDTH);
+}
+
 void Editor::press(int px, int py) {
     const float scale = (float)wide / WIDTH, x = (float)px / scale, y = (float)py / scale;
-    const int chooser = chooser_at(x, y);
-    if (chooser >= 0) {
+    const int chooser = chooser_at(x, y), before = held;
+    held = slider_at(x, y);
+    if (held >= 0) {
+        const bool is_double = held == before && ticks - pressed_at < DOUBLE_TICKS;
+        if (is_double) slide(held, to_unit(SLID[held], parameters[SLID[held]].usual));
+        else drag(px, py);
+        pressed_at = ticks;
+        if (is_double) held = -1;
+    } else if (chooser >= 0) {
         const bool is_back = x - CHOOSERS_X - CHOOSER_STEP * (float)chooser < CHOOSER_WIDTH / 2;
         turn(px, py, is_back ? -1 : 1);
     } else if (y < 2 * ZOOM_Y && x > ZOOM_X - 12) zoom(wide >= 2 * WIDTH ? -1000 : 1);
@@ -94,19 +126,27 @@ void Editor::press(int px, int py) {
 void Editor::turn(int px, int py, int steps) {
     const float scale = (float)wide / WIDTH;
     const int chooser = chooser_at((float)px / scale, (float)py / scale);
+    const int slider = slider_at((float)px / scale, (float)py / scale);
+    if (slider >= 0) slide(slider, to_unit(SLID[slider], instrument.value(SLID[slider])) - WHEEL_STEP * steps);
     if (chooser >= 0) choose(chooser, (int)instrument.value(CHOSEN[chooser]) + steps);
 }
 
 void Editor::key(Key key) {
+    if (key == Key::LARGER || key == Key::SMALLER) return zoom(key == Key::LARGER ? 1 : -1);
+    if (key == Key::NEXT) return void((focus = (focus + 1) % (CHOOSERS + SLIDERS), is_stale = true));
+    if (focus >= CHOOSERS) {
+        const int slider = focus - CHOOSERS;
+        const double unit = to_unit(SLID[slider], instrument.value(SLID[slider]));
+        const bool is_less = key == Key::LEFT || key == Key::DOWN;
+        return slide(slider, key == Key::FIRST ? 0.0 : key == Key::LAST ? 1.0 : unit + (is_less ? -WHEEL_STEP : WHEEL_STEP));
+    }
     const int now = (int)instrument.value(CHOSEN[focus]);
     switch (key) {
     case Key::LEFT: case Key::UP: return choose(focus, now - 1);
     case Key::RIGHT: case Key::DOWN: return choose(focus, now + 1);
     case Key::FIRST: return choose(focus, 0);
     case Key::LAST: return choose(focus, parameters[CHOSEN[focus]].steps);
-    case Key::LARGER: return zoom(1);
-    case Key::SMALLER: return zoom(-1);
-    case Key::NEXT: focus = (focus + 1) % CHOOSERS, is_stale = true;
+    default: return;
     }
 }
 
@@ -125,6 +165,7 @@ void Editor::zoom(int steps) {
 /* -- what is drawn ---------------------------------------------------------------------------- */
 
 void Editor::tick() {
+    ticks++;
     window.poll();
     if (window.is_open() && (follow() || is_stale)) put();
 }
@@ -144,6 +185,10 @@ bool Editor::follow() {
         has_changed |= now != chosen[i];
         chosen[i] = now;
     }
+    for (int i = 0; i < SLIDERS; i++) {
+        has_changed |= instrument.value(SLID[i]) != slid[i];
+        slid[i] = instrument.value(SLID[i]);
+    }
     const double before = seen.frame;
     if (!instrument.snapshot(&seen) || seen.frame == before) return has_changed;
     const bool rests = seen.string < 0 && !(seen.rms > SILENT);
@@ -161,6 +206,7 @@ void Editor::draw() {
     canvas.box(12, 10, PANEL_X - 17, 234, 8, SURFACE);
     draw_instrument();
     draw_gauges();
+    for (int i = 0; i < SLIDERS; i++) draw_slider(i);
     for (int i = 0; i < CHOOSERS; i++) draw_chooser(i);
 }
 
@@ -251,10 +297,25 @@ void Editor::draw_gauge(int row, const char *name, const char *value, float shar
     else if (share > 0) canvas.box(PANEL_X, y + 18, fmaxf(PANEL_WIDTH * share, 6), 6, 3, SOFT);
 }
 
+void Editor::draw_slider(int slider) {
+    const float x = SLIDERS_X + SLIDER_STEP * (float)(slider % IN_A_ROW), y = SLIDERS_Y + SLIDER_HEIGHT * (float)(slider / IN_A_ROW);
+    const float share = (float)to_unit(SLID[slider], slid[slider]);
+    char value[64];
+    instrument.all().write(SLID[slider], slid[slider], value, sizeof value);
+    const char *name = parameters[SLID[slider]].name;
+    const float value_width = canvas.text(0, 0, 11, value, INK, false), room = SLIDER_WIDTH - value_width - 6;
+    const float size = fminf(11, room / canvas.text(0, 0, 1, name, INK, false));
+    canvas.text(x, y + 11, size, name, focus == CHOOSERS + slider ? OUTER : SOFT);
+    canvas.text(x + SLIDER_WIDTH - value_width, y + 11, 11, value, INK);
+    canvas.box(x, y + 16, SLIDER_WIDTH, 4, 2, LINE);
+    canvas.disc(x + SLIDER_WIDTH * share, y + 18, 5, focus == CHOOSERS + slider ? OUTER : SOFT);
+}
+
 void Editor::draw_chooser(int chooser) {
     const Parameter &p = parameters[CHOSEN[chooser]];
     const float x = CHOOSERS_X + CHOOSER_STEP * (float)chooser, y = CHOOSERS_Y, room = CHOOSER_WIDTH - 2 * ARROW;
-    const char *name = p.choices[chosen[chooser]];
+    char name[64];
+    instrument.all().write(CHOSEN[chooser], chosen[chooser], name, sizeof name);
     canvas.text(x + 2, y - 8, 12, p.name, SOFT);
     canvas.box(x, y, CHOOSER_WIDTH, CHOOSER_HEIGHT, 8, chooser == focus ? OUTER : LINE);
     canvas.box(x + 1.5f, y + 1.5f, CHOOSER_WIDTH - 3, CHOOSER_HEIGHT - 3, 7, SURFACE);

@@ -1,5 +1,5 @@
-/* The plug-in's own window: strings, bow and fingers as they move, what is heard, and preset, mapping
- * and tuning to choose. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
+/* The plug-in's own window: strings, bow and fingers as they move, what is heard, and preset,
+ * articulation, mapping and tuning to choose. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
  * is nothing while it is closed: no memory, window or timer.
  */
 #ifndef YEHU_EDITOR_HPP
@@ -37,11 +37,12 @@ public:
     /* From the window, and `tick` from a timer. */
     void tick();
     void press(int x, int y);
+    void drag(int x, int y);
     void turn(int x, int y, int steps);
     void key(Key key);
 
 private:
-    static constexpr int CHOOSERS = 3, SHAPES = 8, POINTS = 64, STRINGS = 2;
+    static constexpr int CHOOSERS = 4, SLIDERS = 8, SHAPES = 8, POINTS = 64, STRINGS = 2;
 
     bool follow();
     void put();
@@ -51,7 +52,10 @@ private:
     void draw_gauges();
     void draw_gauge(int row, const char *name, const char *value, float share, float from, float to);
     void draw_chooser(int chooser);
+    void draw_slider(int slider);
     int chooser_at(float x, float y) const;
+    int slider_at(float x, float y) const;
+    void slide(int slider, double unit);
     void choose(int chooser, int choice);
     void zoom(int percent);
 
@@ -61,7 +65,9 @@ private:
     Canvas canvas;
     int wide = WIDTH, high = HEIGHT;
     bool is_stale = true, is_at_rest = false;
-    int focus = 0, chosen[CHOOSERS] = {-1, -1, -1};
+    int held = -1, pressed_at = 0, ticks = 0; /* of sliders: the one that the mouse moves, where, and when */
+    double slid[SLIDERS] = {};
+    int focus = 0, chosen[CHOOSERS] = {-1, -1, -1, -1};
     struct yehu_snapshot seen = {};
     float shapes[STRINGS][SHAPES][POINTS] = {}; /* m; the latest at `latest` */
     int latest = 0;

@@ -15,8 +15,9 @@ constexpr double STILL_S = 1.0;
 } /* namespace */
 
 Instrument::Instrument() : code(engine()) {
-    for (int i = 0; i < PARAMETERS; i++) values[i].store(parameters[i].usual);
-    for (int word = 0; word < WORDS; word++) set_bits[word].store(0), moved_bits[word].store(0);
+    for (int word = 0; word < WORDS; word++) set_bits[word] = moved_bits[word] = edited_bits[word] = 0;
+    block = 0;
+    forget_host();
     memset(notes, 0, sizeof notes);
 }
 
@@ -42,7 +43,7 @@ bool Instrument::begin(double rate) {
     wants_zone = true;
     wants_tables = value(MAPPING) != 0.0 || value(TUNING) != 0.0; /* else it has them */
     for (int i = 0; i < PARAMETERS; i++)
-        if (parameters[i].index >= 0 && value(i) != parameters[i].usual) flag(set_bits, i);
+        if (parameters[i].index >= 0 && value(i) != code.value(rig, parameters[i].index)) flag(set_bits, i);
     return true;
 }
 
@@ -65,51 +66,62 @@ void Instrument::transport(bool is_playing) {
 
 /* -- parameters ------------------------------------------------------------------------------- */
 
-void Instrument::store(int parameter, double value) {
-    const Parameter &p = parameters[parameter];
-    if (p.steps > 0) value = floor(value + 0.5);
-    values[parameter].store(value < p.lo ? p.lo : value > p.hi ? p.hi : value);
-}
+void Instrument::flag(Bits &bits, int parameter) { bits[parameter / 32].fetch_or(1u << parameter % 32); }
 
-void Instrument::flag(std::atomic<uint32_t> *bits, int parameter) {
-    bits[parameter / 32].fetch_or(1u << parameter % 32);
-}
-
-bool Instrument::was_moved(int parameter) {
+bool Instrument::take_flag(Bits &bits, int parameter) {
     const uint32_t bit = 1u << parameter % 32;
-    return (moved_bits[parameter / 32].fetch_and(~bit) & bit) != 0;
+    return (bits[parameter / 32].load(std::memory_order_relaxed) & bit) && (bits[parameter / 32].fetch_and(~bit) & bit);
 }
 
-/* Store a value, and those that come with it; `each` of them, by parameter. */
-template <class Each> void Instrument::change(int parameter, double value, Each each) {
-    if (!(value - value == 0.0)) return; /* no finite number */
-    const double before = this->value(parameter);
-    store(parameter, value);
-    const int choice = (int)this->value(parameter);
-    each(parameter);
-    if (before == this->value(parameter)) return;
-    const auto move = [&](int other, double to) {
-        store(other, to);
-        flag(moved_bits, other);
-        each(other);
-    };
-    if (parameter == PRESET)
-        for (int i = 0; i < presets[choice].count; i++)
-            move(presets[choice].values[i].parameter, presets[choice].values[i].value);
-    if (parameter != MAPPING) return;
-    const Values &old = starts[(int)before], &now = starts[choice];
-    for (int i = 0; i < old.count; i++)
-        move(old.values[i].parameter, parameters[old.values[i].parameter].usual);
-    for (int i = 0; i < now.count; i++) move(now.values[i].parameter, now.values[i].value);
+bool Instrument::has_moved() const {
+    uint32_t any = 0;
+    for (int word = 0; word < WORDS; word++) any |= moved_bits[word] | edited_bits[word];
+    return any != 0;
 }
 
-void Instrument::set(int parameter, double value) {
-    change(parameter, value, [this](int each) { flag(set_bits, each); });
+/* Hosts send values again, block after block or as they begin: also the old one of a parameter that a
+ * preset or the window has changed since. It is no command if the host has not heard of that change, or
+ * has sent the same in the last block. */
+bool Instrument::is_old(int parameter, double value) {
+    const auto usual = std::memory_order_relaxed;
+    const bool repeats = block.load(usual) - sent_in[parameter].load(usual) <= 1 && is_same(parameter, value, sent[parameter].load(usual));
+    sent[parameter].store(value, usual), sent_in[parameter].store(block.load(usual), usual);
+    if (is_same(parameter, value, this->value(parameter))) return know(parameter, value), false;
+    if (!repeats && !is_same(parameter, value, known[parameter].load(usual))) return know(parameter, value), false;
+    flag(moved_bits, parameter); /* so that it hears of it */
+    flag(moved_bits, PRESET);
+    return true;
+}
+
+void Instrument::forget_host() {
+    for (int i = 0; i < PARAMETERS; i++) known[i] = sent[i] = value(i), sent_in[i] = block - 2;
+}
+
+void Instrument::flush(int parameter, double value) {
+    block += 2; /* what comes by itself repeats nothing */
+    if (!(value - value == 0.0) || is_old(parameter, value)) return;
+    settings.change(parameter, value, [=](int each, bool) {
+        flag(set_bits, each);
+        if (each != parameter) flag(moved_bits, each);
+    });
 }
 
 void Instrument::edit(int parameter, double value) {
-    set(parameter, value);
-    flag(moved_bits, parameter);
+    settings.change(parameter, value, [=](int each, bool) {
+        flag(set_bits, each);
+        sent_in[each] = block.load();
+        flag(each == parameter ? edited_bits : moved_bits, each);
+    });
+}
+
+bool Instrument::load(const char *text, size_t size) {
+    double before[PARAMETERS];
+    for (int i = 0; i < PARAMETERS; i++) before[i] = value(i);
+    if (!settings.load(text, size)) return false;
+    for (int i = 0; i < PARAMETERS; i++)
+        if (value(i) != before[i]) flag(set_bits, i);
+    forget_host();
+    return true;
 }
 
 bool Instrument::snapshot(struct yehu_snapshot *into) const {
@@ -118,11 +130,18 @@ bool Instrument::snapshot(struct yehu_snapshot *into) const {
 }
 
 void Instrument::parameter(uint32_t offset, int parameter, double value) {
+    if (!(value - value == 0.0) || is_old(parameter, value)) return; /* or no finite number */
     const int64_t frame = frame_at(offset);
     /* Hosts send all values as they begin or load: what is so already is not taken from the player. */
     const int index = parameters[parameter].index;
-    if (rig && index >= 0 && value == this->value(parameter) && value == code.value(rig, index)) return;
-    change(parameter, value, [=](int each) { apply(frame, each); });
+    const double now = this->value(parameter);
+    if (rig && index >= 0 && is_same(parameter, value, now) && now == code.value(rig, index)) return;
+    settings.change(parameter, value, [=](int each, bool) {
+        apply(frame, each);
+        if (each == parameter) return;
+        flag(moved_bits, each);
+        sent_in[each].store(block.load(std::memory_order_relaxed), std::memory_order_relaxed);
+    });
 }
 
 void Instrument::apply(int64_t frame, int parameter) {
@@ -136,6 +155,7 @@ void Instrument::apply(int64_t frame, int parameter) {
 }
 
 void Instrument::begin_block() {
+    block.fetch_add(1, std::memory_order_relaxed);
     if (!rig) return;
     if (wants_tables) use_tables();
     if (wants_zone) set_zone();

@@ -10,20 +10,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "carried.h"
 #include "engine.hpp"
 #include "resampler.hpp"
+#include "settings.hpp"
 
 namespace yehu {
-
-/* The parameter of a number, or -1. */
-int parameter_of(uint32_t number);
-/* 0 to 1, along the parameter's curve, and back. */
-double to_unit(int parameter, double value);
-double from_unit(int parameter, double unit);
-/* A value as text, and a text's value; whatever the locale is. */
-void write_value(int parameter, double value, char *into, size_t size);
-bool read_value(int parameter, const char *text, double *value);
 
 class Instrument {
 public:
@@ -54,19 +45,25 @@ public:
     void express(uint32_t offset, int kind, int id, int channel, int key, double value);
     void process(float *left, float *right, uint32_t frames);
 
-    /* From any thread. A parameter that is set is heard from the next block on. */
-    double value(int parameter) const { return values[parameter].load(std::memory_order_relaxed); }
-    void set(int parameter, double value);
-    /* As `set`, where the change is to be reported to the host. */
+    /* From any thread. */
+    double value(int parameter) const { return settings.value(parameter); }
+    const Settings &all() const { return settings; }
+    /* As `parameter`, between blocks. */
+    void flush(int parameter, double value);
+    /* From the window: heard from the next block on, and to be reported to the host. */
     void edit(int parameter, double value);
-    /* Whether a parameter was changed by another one since this was asked. */
-    bool was_moved(int parameter);
+    /* Whether the window, or something else than the host, changed a parameter since this was asked. */
+    bool was_edited(int parameter) { return take_flag(edited_bits, parameter); }
+    bool was_moved(int parameter) { return take_flag(moved_bits, parameter); }
+    bool has_moved() const;
+    /* The host has a value now: another one from there is a change. */
+    void know(int parameter, double value) { known[parameter].store(value, std::memory_order_relaxed); }
 
     /* What is to be seen of it, from the main thread; false before `begin`. */
     bool snapshot(struct yehu_snapshot *into) const;
 
     /* State as text; `save` returns its length, which may be more than `size`. */
-    size_t save(char *into, size_t size) const;
+    size_t save(char *into, size_t size) const { return settings.save(into, size); }
     bool load(const char *text, size_t size);
 
 private:
@@ -74,9 +71,11 @@ private:
     static constexpr int MEMBERS = 15;
     struct Note { int id, channel, key; bool sounds, touched; };
 
-    template <class Each> void change(int parameter, double value, Each each);
-    void store(int parameter, double value);
-    void flag(std::atomic<uint32_t> *bits, int parameter);
+    using Bits = std::atomic<uint32_t>[WORDS];
+    static void flag(Bits &bits, int parameter);
+    static bool take_flag(Bits &bits, int parameter);
+    bool is_old(int parameter, double value);
+    void forget_host();
     int64_t frame_at(uint32_t offset) const;
     void post(int64_t frame, int kind, int64_t index, double value, double other = 0.0);
     void message(int64_t frame, int status, int one, int two);
@@ -89,8 +88,12 @@ private:
     void *allocated = nullptr, *rig = nullptr;
     yehu_tables *tables = nullptr;
     Resampler resampler;
-    std::atomic<double> values[PARAMETERS];
-    std::atomic<uint32_t> set_bits[WORDS], moved_bits[WORDS];
+    Settings settings;
+    /* Of the host: what it has, as far as is known; what it sent last, and in which block, or in which
+     * block it was changed by something else. */
+    std::atomic<double> known[PARAMETERS], sent[PARAMETERS];
+    std::atomic<uint32_t> sent_in[PARAMETERS], block;
+    Bits set_bits, moved_bits, edited_bits;
     bool wants_tables = false, wants_zone = false, plays = false;
     Note notes[MEMBERS];
     int latest = 0;

@@ -27,9 +27,17 @@ using namespace yehu;
 enum { EVENTS, LEFT, RIGHT, LATENCY, FIRST };
 static_assert(PRESET == 0, "the parameters but for the first are ports");
 
+/* As control-input-port-change-request.h of KXStudio's extensions, which sets of headers have not. */
+constexpr const char *REQUESTS = "http://kx.studio/ns/lv2ext/control-input-port-change-request";
+struct PortRequest {
+    void *handle;
+    int (*change)(void *handle, uint32_t port, float value);
+};
+
 struct Plugin {
     Instrument instrument;
     double rate;
+    const PortRequest *requests; /* or null */
     const LV2_Atom_Sequence *events;
     float *left, *right, *latency;
     const float *ports[PARAMETERS];
@@ -39,12 +47,15 @@ struct Plugin {
 
 LV2_Handle instantiate(const LV2_Descriptor *, double rate, const char *, const LV2_Feature *const *features) {
     const LV2_URID_Map *map = nullptr;
-    for (; features && *features; features++)
+    const PortRequest *requests = nullptr;
+    for (; features && *features; features++) {
         if (!strcmp((*features)->URI, LV2_URID__map)) map = (const LV2_URID_Map *)(*features)->data;
+        if (!strcmp((*features)->URI, REQUESTS)) requests = (const PortRequest *)(*features)->data;
+    }
     void *memory = map ? malloc(sizeof(Plugin)) : nullptr;
     if (!memory) return nullptr;
     Plugin *made = new (memory) Plugin{};
-    made->rate = rate;
+    made->rate = rate, made->requests = requests;
     for (int i = 0; i < PARAMETERS; i++) made->seen[i] = (float)parameters[i].usual;
     made->midi = map->map(map->handle, LV2_MIDI__MidiEvent);
     made->position = map->map(map->handle, LV2_TIME__Position);
@@ -91,6 +102,17 @@ void play(Plugin &plugin, const LV2_Atom_Event *event) {
         plugin.instrument.midi(at, (const uint8_t *)(event + 1), event->body.size);
 }
 
+/* Ask the host for other values of ports: of parameters that moved with another one. */
+void report_moved(const Plugin &plugin, Instrument &instrument) {
+    if (!plugin.requests || !instrument.has_moved()) return;
+    for (int i = PRESET + 1; i < PARAMETERS; i++) {
+        if (!instrument.was_moved(i)) continue;
+        const float now = (float)instrument.value(i);
+        if (plugin.requests->change(plugin.requests->handle, (uint32_t)(FIRST + i - 1), now) == 0) instrument.know(i, now);
+    }
+    instrument.was_moved(PRESET); /* which is no port */
+}
+
 void run(LV2_Handle handle, uint32_t frames) {
     Plugin &plugin = *(Plugin *)handle;
     Instrument &instrument = plugin.instrument;
@@ -104,6 +126,7 @@ void run(LV2_Handle handle, uint32_t frames) {
             instrument.parameter(0, i, plugin.seen[i] = *plugin.ports[i]);
     if (plugin.events) LV2_ATOM_SEQUENCE_FOREACH(plugin.events, event) play(plugin, event);
     instrument.process(plugin.left, plugin.right, frames);
+    report_moved(plugin, instrument);
 }
 
 const LV2_Descriptor descriptor = {YEHU_LV2_URI, instantiate, connect, activate, run, nullptr, cleanup, nullptr};
@@ -124,7 +147,8 @@ void edit(void *owner, int parameter, double value) {
     ui.instrument->edit(parameter, value);
     for (int i = PRESET + 1; i < PARAMETERS; i++) {
         const float now = (float)ui.instrument->value(i);
-        if (ui.instrument->was_moved(i)) ui.write(ui.controller, (uint32_t)(FIRST + i - 1), sizeof now, 0, &now);
+        const bool is_edited = ui.instrument->was_edited(i);
+        if (ui.instrument->was_moved(i) || is_edited) ui.write(ui.controller, (uint32_t)(FIRST + i - 1), sizeof now, 0, &now);
     }
 }
 

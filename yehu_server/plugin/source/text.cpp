@@ -1,13 +1,14 @@
-/* Parameters as numbers from 0 to 1 and as text, and the state, which is text too:
+/* Values of parameters as text, and the state, which is text too:
  *
  *     yehu 1
  *     /mapping=keyboard
  *     /playing/bow_position=0.13
  *
  * A line for each parameter, by its address; a choice by its name. What a version does not know is
- * left out as it reads, so that states open in any version.
+ * left out as it reads, so that states open in any version. A preset that was changed is none, and keeps
+ * its name: `/preset=vibrato, changed`.
  */
-#include "instrument.hpp"
+#include "settings.hpp"
 
 #include <locale.h>
 #include <math.h>
@@ -19,6 +20,7 @@ namespace yehu {
 
 namespace {
 constexpr char HEADING[] = "yehu 1\n";
+constexpr char CHANGED[] = ", changed";
 constexpr size_t LONGEST = 64;
 
 /* The host may have set a locale whose numbers have commas. */
@@ -43,8 +45,8 @@ bool read_number(const char *text, double *value) {
 
 const char *choice_of(int parameter, double value) {
     const Parameter &p = parameters[parameter];
-    const int choice = (int)floor(value + 0.5);
-    return p.choices && choice >= 0 && choice <= p.steps ? p.choices[choice] : nullptr;
+    value = floor(value + 0.5);
+    return p.choices && value >= 0.0 && value <= p.steps ? p.choices[(int)value] : nullptr;
 }
 
 int parameter_at(const char *address, size_t length) {
@@ -53,30 +55,23 @@ int parameter_at(const char *address, size_t length) {
             return i;
     return -1;
 }
+
+/* The preset that was changed, of its name with that word; or 0. */
+int changed_in(const char *text) {
+    for (int i = 1; i <= parameters[PRESET].steps; i++) {
+        const size_t length = strlen(parameters[PRESET].choices[i]);
+        if (!strncmp(text, parameters[PRESET].choices[i], length) && !strcmp(text + length, CHANGED)) return i;
+    }
+    return 0;
+}
 } /* namespace */
 
-int parameter_of(uint32_t number) {
-    for (int i = 0; i < PARAMETERS; i++)
-        if (parameters[i].number == number) return i;
-    return -1;
-}
-
-double to_unit(int parameter, double value) {
-    const Parameter &p = parameters[parameter];
-    value = value < p.lo ? p.lo : value > p.hi ? p.hi : value;
-    return p.exponential ? log(value / p.lo) / log(p.hi / p.lo) : (value - p.lo) / (p.hi - p.lo);
-}
-
-double from_unit(int parameter, double unit) {
-    const Parameter &p = parameters[parameter];
-    unit = unit < 0.0 ? 0.0 : unit > 1.0 ? 1.0 : unit;
-    if (p.steps > 0) return p.lo + floor(unit * p.steps + 0.5);
-    const double value = p.exponential ? p.lo * pow(p.hi / p.lo, unit) : p.lo + unit * (p.hi - p.lo);
-    /* Hosts that keep numbers of 32 bits give the usual value back as it was. */
-    return fabs(unit - to_unit(parameter, p.usual)) < 1e-7 ? p.usual : value;
-}
-
-void write_value(int parameter, double value, char *into, size_t size) {
+void Settings::write(int parameter, double value, char *into, size_t size) const {
+    const int preset = parameter == PRESET && value < 0.5 ? changed.load() : 0;
+    if (preset > 0) {
+        snprintf(into, size, "%s%s", parameters[PRESET].choices[preset], CHANGED);
+        return;
+    }
     if (const char *choice = choice_of(parameter, value)) {
         snprintf(into, size, "%s", choice);
         return;
@@ -87,16 +82,18 @@ void write_value(int parameter, double value, char *into, size_t size) {
     if (*unit) snprintf(into + length, size - length, " %s", unit);
 }
 
-bool read_value(int parameter, const char *text, double *value) {
+bool Settings::read(int parameter, const char *text, double *value) {
     const Parameter &p = parameters[parameter];
+    if (parameter == PRESET && changed_in(text) > 0) return *value = NO_PRESET, true;
     for (int i = 0; p.choices && i <= p.steps; i++)
         if (!strcmp(p.choices[i], text)) return *value = i, true;
     if (!read_number(text, value)) return false;
+    if (p.choices) return *value >= p.lo && *value <= p.hi; /* a number without a choice is none */
     *value = *value < p.lo ? p.lo : *value > p.hi ? p.hi : *value;
     return true;
 }
 
-size_t Instrument::save(char *into, size_t size) const {
+size_t Settings::save(char *into, size_t size) const {
     size_t length = 0;
     const auto add = [&](const char *text) {
         const size_t more = strlen(text);
@@ -105,25 +102,23 @@ size_t Instrument::save(char *into, size_t size) const {
     };
     add(HEADING);
     for (int i = 0; i < PARAMETERS; i++) {
-        char number[LONGEST];
-        write_number("%.17g", value(i), number, sizeof number);
-        const char *choice = choice_of(i, value(i));
+        char word[LONGEST];
+        if (parameters[i].choices) write(i, value(i), word, sizeof word);
+        else write_number("%.17g", value(i), word, sizeof word);
         add(parameters[i].address);
         add("=");
-        add(choice ? choice : number);
+        add(word);
         add("\n");
     }
     return length;
 }
 
-bool Instrument::load(const char *text, size_t size) {
+bool Settings::load(const char *text, size_t size) {
     const size_t heading = strcspn(HEADING, " ");
     if (size < heading || memcmp(text, HEADING, heading)) return false;
-    double before[PARAMETERS];
-    for (int i = 0; i < PARAMETERS; i++) { /* what it does not name is as at first */
-        before[i] = value(i);
-        store(i, parameters[i].usual);
-    }
+    for (int i = 0; i < PARAMETERS; i++) store(i, parameters[i].usual); /* what it does not name */
+    store(PRESET, NO_PRESET);
+    changed = 0;
     for (const char *at = text, *end = text + size; at < end;) {
         const char *line_end = (const char *)memchr(at, '\n', (size_t)(end - at));
         if (!line_end) line_end = end;
@@ -136,12 +131,11 @@ bool Instrument::load(const char *text, size_t size) {
             memcpy(word, equals + 1, length);
             word[length] = 0;
             /* The name of a choice that this version has not is no number either. */
-            if (read_value(parameter, word, &value)) store(parameter, value);
+            if (read(parameter, word, &value)) store(parameter, value);
+            if (parameter == PRESET) changed = changed_in(word);
         }
         at = line_end + 1;
     }
-    for (int i = 0; i < PARAMETERS; i++)
-        if (i != PRESET && value(i) != before[i]) flag(set_bits, i);
     return true;
 }
 

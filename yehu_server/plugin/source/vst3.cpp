@@ -24,6 +24,7 @@ v3_result query(Vst3 &plugin, const v3_tuid id, void **into) {
         {v3_component_iid, COMPONENT},         {v3_audio_processor_iid, PROCESSOR},
         {v3_edit_controller_iid, CONTROLLER},  {v3_midi_mapping_iid, CONTROLLERS_OF_MIDI},
         {v3_unit_information_iid, UNITS},      {v3_process_context_requirements_iid, REQUIREMENTS},
+        {key_switches_iid, KEY_SWITCHES},
     };
     for (const auto &each : known)
         if (v3_tuid_match(each.id, id)) {
@@ -54,7 +55,7 @@ bool read_state(Vst3 &plugin, v3_bstream **stream) {
             break;
     const bool is_right = plugin.instrument.load(text, (size_t)length);
     free(text);
-    for (int i = 0; i < PARAMETERS; i++) plugin.shown[i] = to_unit(i, plugin.instrument.value(i));
+    plugin.shown.copy(plugin.instrument.all());
     return is_right;
 }
 
@@ -140,10 +141,10 @@ v3_result V3_API create(void *, const v3_tuid wanted, const v3_tuid id, void **i
     void *memory = malloc(sizeof(Vst3));
     if (!memory) return V3_NOMEM;
     Vst3 *made = new (memory) Vst3{};
-    const void *tables[] = {&component, &processor, &requirements, &controller, &controllers_of_midi, &units};
+    const void *tables[] = {&component, &processor, &requirements, &controller, &controllers_of_midi, &units,
+                            &key_switches};
     memcpy(made->tables, tables, sizeof tables);
     made->references = 1, made->rate = 48000.0;
-    for (int i = 0; i < PARAMETERS; i++) made->shown[i] = to_unit(i, parameters[i].usual);
     const v3_result result = query(*made, id, into);
     unref(*made);
     return result;

@@ -17,13 +17,14 @@
 
 namespace yehu {
 
-enum { COMPONENT, PROCESSOR, REQUIREMENTS, CONTROLLER, CONTROLLERS_OF_MIDI, UNITS, INTERFACES };
+enum { COMPONENT, PROCESSOR, REQUIREMENTS, CONTROLLER, CONTROLLERS_OF_MIDI, UNITS, KEY_SWITCHES, INTERFACES };
 
 struct Vst3 {
     const void *tables[INTERFACES]; /* first: see `of` */
     std::atomic<uint32_t> references;
     double rate;
-    double shown[PARAMETERS]; /* 0 to 1: what the host set the controller to */
+    Settings shown; /* what the host set the controller to */
+    bool unread[PARAMETERS]; /* whether it was changed since by something else */
     v3_component_handler **handler; /* of the host; or null */
     Instrument instrument;
 };
@@ -34,6 +35,22 @@ extern const v3_process_context_requirements_cpp requirements;
 extern const v3_edit_controller_cpp controller;
 extern const v3_midi_mapping_cpp controllers_of_midi;
 extern const v3_unit_information_cpp units;
+
+/* IKeyswitchController. */
+struct KeySwitch {
+    uint32_t type;
+    v3_str_128 title, short_title;
+    int32_t lowest, highest, remapped, unit, flags;
+};
+struct KeySwitches : v3_funknown {
+    int32_t(V3_API *count)(void *self, int32_t bus, int16_t channel);
+    v3_result(V3_API *get)(void *self, int32_t bus, int16_t channel, int32_t index, KeySwitch *info);
+};
+extern const v3_tuid key_switches_iid;
+extern const KeySwitches key_switches;
+/* The key that chooses the first articulation by the mapping that is shown, or -1, and how many do. */
+int first_switch(const Vst3 &plugin);
+int switch_count(const Vst3 &plugin);
 
 template <int place> Vst3 &of(void *self) {
     return *(Vst3 *)((const void **)self - place);
@@ -62,6 +79,8 @@ inline v3_plugin_view **make_view(Vst3 &) { return nullptr; }
 #endif
 
 void write_text(const char *text, int16_t *into); /* into a v3_str_128 */
+/* From the host's main thread: change what is shown, and report what moves with it. */
+void show(Vst3 &plugin, int parameter, double value);
 bool read_state(Vst3 &plugin, v3_bstream **stream);
 bool write_state(const Vst3 &plugin, v3_bstream **stream);
 

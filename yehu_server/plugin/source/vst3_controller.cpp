@@ -34,8 +34,7 @@ v3_result V3_API terminate(void *) { return V3_OK; }
 
 /* The state of the component is that of the controller. */
 v3_result V3_API follow_component(void *self, v3_bstream **) {
-    Vst3 &plugin = of<CONTROLLER>(self);
-    for (int i = 0; i < PARAMETERS; i++) plugin.shown[i] = to_unit(i, plugin.instrument.value(i));
+    of<CONTROLLER>(self).shown.copy(of<CONTROLLER>(self).instrument.all());
     return V3_OK;
 }
 
@@ -71,11 +70,12 @@ v3_result V3_API get_info(void *, int32_t index, v3_param_info *info) {
     return V3_OK;
 }
 
-v3_result V3_API to_text(void *, v3_param_id number, double unit, v3_str_128 text) {
+v3_result V3_API to_text(void *self, v3_param_id number, double unit, v3_str_128 text) {
     const int parameter = parameter_of(number);
     char written[64];
-    if (parameter >= 0) write_value(parameter, from_unit(parameter, unit), written, sizeof written);
-    else snprintf(written, sizeof written, "%d", (int)(127.0 * unit + 0.5));
+    if (parameter >= 0)
+        of<CONTROLLER>(self).shown.write(parameter, from_unit(parameter, unit), written, sizeof written);
+    else snprintf(written, sizeof written, "%.0f", 127.0 * unit);
     write_text(written, text);
     return V3_OK;
 }
@@ -85,7 +85,7 @@ v3_result V3_API from_text(void *, v3_param_id number, int16_t *text, double *un
     char read[64];
     double value;
     read_text(text, read, sizeof read);
-    if (parameter < 0 || !read_value(parameter, read, &value)) return V3_FALSE;
+    if (parameter < 0 || !Settings::read(parameter, read, &value)) return V3_FALSE;
     *unit = to_unit(parameter, value);
     return V3_OK;
 }
@@ -102,15 +102,25 @@ double V3_API to_normalised(void *, v3_param_id number, double value) {
 
 double V3_API get(void *self, v3_param_id number) {
     const int parameter = parameter_of(number);
-    if (parameter >= 0) return of<CONTROLLER>(self).shown[parameter];
-    return number % OF_CHANNEL == BEND ? 0.5 : 0.0;
+    if (parameter < 0) return number % OF_CHANNEL == BEND ? 0.5 : 0.0;
+    Vst3 &plugin = of<CONTROLLER>(self);
+    const double value = plugin.shown.value(parameter);
+    if (plugin.unread[parameter]) plugin.instrument.know(parameter, value);
+    plugin.unread[parameter] = false;
+    return to_unit(parameter, value);
 }
 
 /* Only what is shown: the host sets the processor, at the frame. */
 v3_result V3_API set(void *self, v3_param_id number, double unit) {
     const int parameter = parameter_of(number);
-    if (parameter >= 0) of<CONTROLLER>(self).shown[parameter] = unit;
-    return parameter >= 0 || number < OF_MIDI ? V3_OK : V3_INVALID_ARG;
+    if (parameter < 0) return number < OF_MIDI ? V3_OK : V3_INVALID_ARG;
+    Vst3 &plugin = of<CONTROLLER>(self);
+    const double value = from_unit(parameter, unit);
+    plugin.unread[parameter] = false;
+    /* It may be what the processor reported. */
+    if (is_same(parameter, value, plugin.instrument.value(parameter))) plugin.instrument.know(parameter, value);
+    show(plugin, parameter, value);
+    return V3_OK;
 }
 
 
@@ -161,15 +171,26 @@ v3_result V3_API get_list(void *, int32_t index, v3_program_list_info *info) {
     return V3_OK;
 }
 
+bool is_program(int32_t list, int32_t index) { return list == PROGRAMS && index >= 0 && index <= parameters[PRESET].steps; }
+
 v3_result V3_API get_program(void *, int32_t list, int32_t index, v3_str_128 name) {
-    if (list != PROGRAMS || index < 0 || index > parameters[PRESET].steps) return V3_INVALID_ARG;
+    if (!is_program(list, index)) return V3_INVALID_ARG;
     write_text(parameters[PRESET].choices[index], name);
     return V3_OK;
 }
 
 v3_result V3_API get_program_info(void *, int32_t, int32_t, const char *, v3_str_128) { return V3_NOT_IMPLEMENTED; }
-v3_result V3_API has_pitch_names(void *, int32_t, int32_t) { return V3_FALSE; }
-v3_result V3_API get_pitch_name(void *, int32_t, int32_t, int16_t, v3_str_128) { return V3_NOT_IMPLEMENTED; }
+
+v3_result V3_API has_pitch_names(void *self, int32_t list, int32_t index) {
+    return is_program(list, index) && switch_count(of<UNITS>(self)) > 0 ? V3_TRUE : V3_FALSE;
+}
+
+v3_result V3_API get_pitch_name(void *self, int32_t list, int32_t index, int16_t key, v3_str_128 name) {
+    const int articulation = key - first_switch(of<UNITS>(self));
+    if (!is_program(list, index) || articulation < 0 || articulation >= switch_count(of<UNITS>(self))) return V3_FALSE;
+    return write_text(parameters[ARTICULATION].choices[articulation], name), V3_OK;
+}
+
 int32_t V3_API get_selected(void *) { return 0; }
 v3_result V3_API select(void *, int32_t) { return V3_OK; }
 
@@ -180,7 +201,40 @@ v3_result V3_API get_by_bus(void *, int32_t, int32_t, int32_t bus, int32_t, int3
 
 v3_result V3_API set_program(void *, int32_t, int32_t, v3_bstream **) { return V3_NOT_IMPLEMENTED; }
 
+/* As ivstunits.h and ivsteditcontroller.h, of which sets of headers have not all. */
+constexpr int32_t KEY_SWITCHES_CHANGED = 1 << 10, ALL_PROGRAMS = -1;
+const v3_tuid unit_handler_iid = V3_ID(0x4B5147F8, 0x4654486B, 0x8DAB30BA, 0x163A3C56);
+struct UnitHandler : v3_funknown {
+    v3_result(V3_API *select)(void *self, int32_t unit);
+    v3_result(V3_API *change)(void *self, int32_t list, int32_t program);
+};
+
+/* Keys have other names. */
+void report_names(const Vst3 &plugin) {
+    UnitHandler **handler = nullptr;
+    v3_cpp_obj_query_interface(plugin.handler, unit_handler_iid, &handler);
+    if (!handler) return;
+    (*handler)->change(handler, PROGRAMS, ALL_PROGRAMS);
+    (*handler)->unref(handler);
+}
+
 } /* namespace */
+
+/* As the standard wants it of a parameter that changes programs: what moves with it is not written by
+ * the plug-in but read by the host. */
+void show(Vst3 &plugin, int parameter, double value) {
+    int32_t flags = 0;
+    const int first = first_switch(plugin);
+    plugin.shown.change(parameter, value, [&](int each, bool is_other) {
+        if (each == parameter || !is_other) return;
+        plugin.unread[each] = true;
+        flags |= V3_RESTART_PARAM_VALUES_CHANGED;
+    });
+    const bool has_other_keys = first != first_switch(plugin);
+    if (has_other_keys) flags |= KEY_SWITCHES_CHANGED;
+    if (has_other_keys && plugin.handler) report_names(plugin);
+    if (flags && plugin.handler) v3_cpp_obj(plugin.handler)->restart_component(plugin.handler, flags);
+}
 
 const v3_edit_controller_cpp controller = {
     unknown<CONTROLLER>(),

@@ -114,7 +114,7 @@ void take_parameters(Instrument &instrument, v3_param_changes **changes) {
             double unit;
             if (points->get_point(queue, n, &at, &unit) != V3_OK) continue;
             const uint32_t offset = at > 0 ? (uint32_t)at : 0;
-            unit = unit < 0.0 ? 0.0 : unit > 1.0 ? 1.0 : unit;
+            unit = unit > 0.0 ? unit < 1.0 ? unit : 1.0 : 0.0; /* or no number */
             if (parameter >= 0) instrument.parameter(offset, parameter, from_unit(parameter, unit));
             else if (number < OF_MIDI) take_midi(instrument, offset, number, unit);
         }
@@ -145,10 +145,11 @@ void take_events(Instrument &instrument, v3_event_list **events) {
     }
 }
 
-/* Report to the host parameters that moved as another one did. */
+/* Report to the host parameters that moved with another one. */
 void report_moved(Instrument &instrument, v3_param_changes **changes) {
-    if (!changes) return;
+    if (!changes || !instrument.has_moved()) return;
     for (int i = 0; i < PARAMETERS; i++) {
+        instrument.was_edited(i); /* which its window reports */
         if (!instrument.was_moved(i)) continue;
         v3_param_id number = parameters[i].number;
         int32_t index = 0;

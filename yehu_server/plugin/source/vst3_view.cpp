@@ -124,17 +124,17 @@ v3_result V3_API set_scale(void *self, float scale) {
 
 void V3_API on_timer(void *self) { viewed<TIMER>(self).editor.tick(); }
 
-/* The host sets the processor, too, which reports what else moves. */
+/* The host sets the processor, too. */
 void edit(void *owner, int parameter, double value) {
     Vst3 &plugin = *((View *)owner)->plugin;
-    const double unit = to_unit(parameter, value);
     const uint32_t number = parameters[parameter].number;
-    plugin.shown[parameter] = unit;
-    plugin.instrument.set(parameter, value);
-    if (!plugin.handler) return;
-    v3_cpp_obj(plugin.handler)->begin_edit(plugin.handler, number);
-    v3_cpp_obj(plugin.handler)->perform_edit(plugin.handler, number, unit);
-    v3_cpp_obj(plugin.handler)->end_edit(plugin.handler, number);
+    plugin.instrument.edit(parameter, value);
+    if (plugin.handler) {
+        v3_cpp_obj(plugin.handler)->begin_edit(plugin.handler, number);
+        v3_cpp_obj(plugin.handler)->perform_edit(plugin.handler, number, to_unit(parameter, value));
+        v3_cpp_obj(plugin.handler)->end_edit(plugin.handler, number);
+    }
+    show(plugin, parameter, value);
 }
 
 bool resize(void *owner, int width, int height) {

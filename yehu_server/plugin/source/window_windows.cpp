@@ -109,7 +109,12 @@ LRESULT CALLBACK Window::Native::receive(HWND window, UINT message, WPARAM one, 
     case WM_GETDLGCODE: return DLGC_WANTARROWS | DLGC_WANTTAB | DLGC_WANTCHARS;
     case WM_LBUTTONDOWN:
         SetFocus(window);
+        SetCapture(window);
         native->editor->press(place.x, place.y);
+        return 0;
+    case WM_LBUTTONUP: ReleaseCapture(); return 0;
+    case WM_MOUSEMOVE:
+        if (one & MK_LBUTTON) native->editor->drag(place.x, place.y);
         return 0;
     case WM_MOUSEWHEEL: /* its place is of the screen */
         ScreenToClient(window, &place);

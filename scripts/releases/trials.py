@@ -22,7 +22,6 @@ import sys
 import tempfile
 import threading
 import time
-import wave
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -129,10 +128,10 @@ def score_of(there: Installation) -> str:
 
 
 def _heard(sound: Path) -> None:
-    """Raise TrialError where a WAV file is silent."""
-    with contextlib.closing(wave.open(str(sound))) as file:
-        if not any(file.readframes(file.getnframes())[::7]):
-            raise TrialError(f"{sound.name} is silent")
+    """Raise TrialError where a WAV file, of whatever samples, is silent."""
+    _, _, samples = sound.read_bytes().partition(b"data")
+    if not any(samples[4:]):  # behind their length
+        raise TrialError(f"{sound.name} is silent")
 
 
 def serve(there: Installation) -> str:
@@ -238,22 +237,24 @@ def _served(folder: Path) -> Iterator[str]:
 TRIALS = (render, serve, api, page)
 
 
-def try_wheel(wheel: Path, version: str, python: str | None) -> dict[str, str]:
-    """What each trial of a wheel under one Python found; what failed begins with ``FAILED``."""
+def try_wheel(wheel: Path, version: str, python: str | None) -> Iterator[tuple[str, str]]:
+    """Yield what each trial of a wheel under one Python found; what failed begins with FAILED."""
     if python is None:
-        return {"installs": f"not tried: there is no Python {version} here"}
+        yield "installs", f"not tried: there is no Python {version} here"
+        return
     with tempfile.TemporaryDirectory(prefix="yehu trial ") as scratch:
         try:
             there = Installation(python, wheel.resolve(), Path(scratch))
-        except TrialError as error:
-            return {"installs": f"FAILED: {error}"}
-        found = {"installs": f"{there.installed_s:.0f} s"}
+        except (TrialError, OSError) as error:
+            yield "installs", f"FAILED: {error}"
+            return
+        yield "installs", f"{there.installed_s:.0f} s"
         for trial in TRIALS:
             try:
-                found[trial.__name__] = trial(there)
+                found = trial(there)
             except (TrialError, subprocess.TimeoutExpired, OSError) as error:
-                found[trial.__name__] = f"FAILED: {error}"
-    return found
+                found = f"FAILED: {error}"
+            yield trial.__name__, found
 
 
 def main(words: Sequence[str]) -> int:
@@ -262,7 +263,7 @@ def main(words: Sequence[str]) -> int:
     chosen = {each: shutil.which(each) for each in named} or pythons()
     failed = False
     for version, python in chosen.items():
-        for what, found in try_wheel(Path(wheel), version, python).items():
+        for what, found in try_wheel(Path(wheel), version, python):
             print(f"Python {version}: {what}: {found}", flush=True)
             failed |= found.startswith("FAILED")
     return int(failed)

@@ -2,16 +2,19 @@
 
 import hashlib
 import shutil
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
+from llvmlite import binding
 
 from yehu_server.ahead import build as build_module
 from yehu_server.ahead import build_hash as hashing
 from yehu_server.ahead.build import build, page_linker
 from yehu_server.ahead.build_hash import build_hash
 from yehu_server.ahead.memory_images import image
+from yehu_server.ahead.module import PAGE
 from yehu_server.core.engine.mailbox import SERVER
 from yehu_server.core.engine.rig import RIG, memory_bytes
 from yehu_server.core.midi.events import START
@@ -121,3 +124,18 @@ def test_zig_links_where_the_system_has_no_linker_and_without_it_both_are_named(
     monkeypatch.setattr(build_module, "find_spec", lambda _name: object())
     assert build_module.linker_of("wasm")[-2:] == ["ziglang", "wasm-ld"]
     assert build_module.linker_of("library")[-2:] == ["ziglang", "cc"]
+
+
+@pytest.mark.skipif(find_spec("ziglang") is None, reason="there is no zig")
+def test_zigs_linker_takes_what_lld_takes(tmp_path):
+    module = binding.parse_assembly(
+        'target triple = "wasm32-unknown-unknown"\n'
+        "define i32 @next(i32 %x) {\n  %y = add i32 %x, 1\n  ret i32 %y\n}\n"
+    )
+    (tmp_path / "next.o").write_bytes(PAGE.machine().emit_object(module))
+    build_module.link_page(
+        build_module.zig("wasm-ld"), tmp_path / "next.o", ["next"], tmp_path / "next.wasm"
+    )
+    linked = (tmp_path / "next.wasm").read_bytes()
+    assert linked.startswith(b"\0asm")
+    assert b"next" in linked

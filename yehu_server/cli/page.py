@@ -64,7 +64,7 @@ def add_to(commands: Any) -> None:
             name; without it they name the page where they were made
         """,
         port={"type": port, "default": PORT},
-        share_url={"type": web_address, "default": ""},
+        share_url={"type": web_address},
     )
 
 
@@ -73,11 +73,11 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.live.page.site import write_page
 
     if arguments.output is not None:
-        written = write_page(arguments.output, arguments.share_url)
+        written = write_page(arguments.output, arguments.share_url or "")
         print_result(f"{arguments.output}: {len(written)} files; index.html is the page")
         return 0
     with tempfile.TemporaryDirectory(prefix="yehu-page-") as folder:
-        write_page(Path(folder), arguments.share_url)
+        write_page(Path(folder), arguments.share_url or "")
         _show(Path(folder), arguments.port, arguments.open)
     return 0
 

@@ -135,3 +135,12 @@ def test_a_device_plays_only_once_the_clock_has_let_go(process):
     assert process("search", "open") == ["found", "opened", "ready"]
     started = ["found", "opened", "ready", "plays", "started"]
     assert process("search", "open", "start") == started
+
+
+@pytest.mark.parametrize(
+    ("reported_s", "latency_ms"), [(0.01, 10.0), (89478.464, 0.0), (-1.0, 0.0)]
+)
+def test_a_latency_that_cannot_be_is_none(reported_s, latency_ms):
+    opened = object.__new__(stream.Stream)
+    opened._stream = SimpleNamespace(latency=reported_s)
+    assert opened.latency_ms == pytest.approx(latency_ms)

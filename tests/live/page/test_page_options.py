@@ -13,6 +13,7 @@ from yehu_server.cli.config import parse
 from yehu_server.cli.page import PLAIN, WHITE_ON_BLACK, drawn
 from yehu_server.cli.report import page_for_phones
 from yehu_server.cli.serve_options import options_of
+from yehu_server.live.page import site
 from yehu_server.live.page.guests import ROLES, Guests
 
 ALL, HERE, LAN = "0.0.0.0", "127.0.0.1", "192.168.1.5"  # noqa: S104 - nothing is bound
@@ -94,3 +95,19 @@ def test_its_modules_are_those_of_the_code_within_a_quiet_zone() -> None:
     assert not any(
         row[0] or row[QUIET - 1] or row[-1] or row[-QUIET] for row in found[: len(expected)]
     )
+
+
+def test_a_public_page_is_named_by_its_address_and_links_of_the_page_have_it(
+    tmp_path, monkeypatch, capsys
+) -> None:
+    module = tmp_path / "yehu.wasm"
+    module.write_bytes(b"")
+    monkeypatch.setattr(site, "page_module", lambda: module)
+    told = '<meta name="yehu-share" content="https://example.org/yehu/">'
+    for words, count in ([], 0), (["--share-url", "https://example.org/yehu/"], 1):
+        assert cli.main(["page", "-o", str(tmp_path / "page"), *words]) == 0
+        assert (tmp_path / "page" / "index.html").read_text("utf-8").count(told) == count
+    for wrong in ("example.org", "ftp://example.org/", "https://", "https://example.org/?pin=1"):
+        with pytest.raises(SystemExit):
+            cli.main(["page", "--share-url", wrong])
+        assert "expected one such as https://host/yehu/" in capsys.readouterr().err

@@ -26,6 +26,7 @@ WATCH_EVERY_S = 0.1
 STALLED = 10  # of these, with nothing new from an input: it is lost, though it does not say so
 CLOSE_WITHIN_S = 0.5
 MAX_CHANNELS = 64
+MAX_LATENCY_S = 60.0  # a longer one is none
 
 
 class Stream:
@@ -65,8 +66,12 @@ class Stream:
 
     @property
     def latency_ms(self) -> float:
-        """Latency between callback and device, as PortAudio reports it."""
-        return 1e3 * float(self._stream.latency)
+        """Latency between callback and device, as PortAudio reports it; 0 where it does not know.
+
+        Over PipeWire's JACK it makes a day of a negative number of frames.
+        """
+        reported_s = float(self._stream.latency)
+        return 1e3 * reported_s if 0.0 <= reported_s < MAX_LATENCY_S else 0.0
 
     def start(self) -> None:
         """Start the callbacks."""

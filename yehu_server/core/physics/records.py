@@ -173,6 +173,8 @@ class Work(Protocol):
     bridge_travel: float
     z_bar: float
     r: float
+    F_N: float
+    mu_S: float
     iterations: int
     dropped_z: float
     dropped_Psi: float
@@ -216,6 +218,11 @@ class Refined(Protocol):
     responses: Array
     free: Array
     mobility: Array
+    stiffness: Array
+    newton: Array
+    v_kept: Array
+    slope: Array
+    mu_S: Array
     z_bar: Array
     r: Array
     skin_drag: Array

@@ -17,11 +17,11 @@ import yehu_server as yehu
 from pictures.saving import ROOT, save
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.bridge import advance_bridge
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.quantities import Quantities, override
 
 NOTEBOOK = ROOT / "examples" / "notebooks" / "2_figures_of_the_paper.ipynb"
 DRAWN = ("2_admittance", "3_bowed", "4_strings", "5_gestures", "6_energy")  # in its order
-PAPERS = {"tension_modulation": 0.0, "felt_loss": 0.0}  # its instrument
+PAPERS = {"base": "paper"}  # its instrument
 BLUE, RED = "#1f5fa8", "#c03a2b"
 
 
@@ -43,7 +43,7 @@ def from_notebook(folder: Path) -> None:
 def admittance(folder: Path) -> None:
     """Draw figure 2: the admittance of the bridge alone, and how it and a strung one are struck."""
     rate, frames = 44100.0, 1 << 15
-    quantities = Quantities(tension_modulation=0.0, felt_loss=0.0)
+    quantities = override(Quantities(), PAPERS)
     model = kernel.prepare(quantities, rate)
     force = np.zeros(frames)
     pulse = int(0.0012 * rate)

@@ -14,7 +14,7 @@ import numpy as np
 from pictures.saving import ROOT, save
 
 from validation import ideal, laws
-from validation.tables import KINDS, exponents
+from validation.tables import KINDS
 
 FIGURES = ROOT / "docs" / "figures"
 BETA = 0.117
@@ -55,8 +55,7 @@ def ideal_string(found: Mapping[str, Any]) -> Any:
         beta, measured, theory = (
             np.array([row[key] for row in found[name]]) for key in ("beta", "limit", "schelleng")
         )
-        power = exponents(found, name)
-        panels[2].loglog(beta, measured, "o", color=colour, label=f"{name} force: β^{power:.2f}")
+        panels[2].loglog(beta, measured, "o", color=colour, label=f"{name} force")
         panels[2].loglog(beta, theory, "--", color=colour)
     panels[2].set(xlabel="β", ylabel="bow force, N", title="On a dashpot; lines: Schelleng")
     panels[2].set_xticks(ideal.BETAS, [f"{beta:g}" for beta in ideal.BETAS])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -72,22 +73,23 @@ def limits(found: Mapping[str, Any]) -> list[str]:
             f"{least['limit']:.3f}",
             f"{least['limit'] / least['schelleng']:.2f}",
             f"{least['reached']:.2f}",
-            f"{great['limit']:.2f}",
-            f"{great['limit'] / great['schelleng']:.2f}",
-            f"{great['reached']:.2f}",
+            *(
+                ["over", "10", ""]  # where the force of the ramp ended
+                if math.isnan(great["limit"])
+                else [
+                    f"{great['limit']:.2f}",
+                    f"{great['limit'] / great['schelleng']:.2f}",
+                    f"{great['reached']:.2f}",
+                ]
+            ),
         ]
         for least, great in zip(found["least"], found["greatest"], strict=True)
     ]
-    powers = [exponents(found, name) for name in ("least", "greatest")]
     rows.append(
         [
             "power of β",
-            f"{powers[0]:.2f} (theory: -2)",
-            "",
-            "",
-            f"{powers[1]:.2f} (theory: -1)",
-            "",
-            "",
+            f"{exponents(found, 'least'):.2f} (theory: -2)",
+            *[""] * 5,
         ]
     )
     return table([*head, "over its limit", "μ reached"], rows)

@@ -61,6 +61,34 @@ def test_a_run_whose_friction_was_not_solved_says_so(monkeypatch):
         yehu.simulate({"duration": 0.01})
 
 
+def test_four_fingers_stop_the_strings_and_their_ledger_closes():
+    fingers = {"finger_position": 0.05, "press_force": 1.5}
+    for finger in (2, 3, 4):
+        fingers[f"finger_position_{finger}"] = 0.02 + 0.04 * finger
+        fingers[f"press_force_{finger}"] = [[0.0, 0.0], [0.02 * finger, 0.0], [0.1, 2.0]]
+    arrays = yehu.simulate({"duration": 0.5, "controls": CONTROLS | fingers}, energy=True).arrays
+    assert arrays["contact_force"].shape == (22050, 4, 2)
+    pressed = arrays["contact_force"][-441:].mean(axis=0).sum(axis=1)
+    assert pressed == pytest.approx([1.5, 2.0, 2.0, 2.0], rel=0.1)  # both strings bear the press
+    assert np.abs(arrays["energy_error"]).max() < 1e-9 * arrays["power_in"].max()
+    for name in ("finger", "friction", "strings", "bridge", "hair"):
+        assert arrays[f"loss_{name}"].min() > -1e-8
+    one = yehu.simulate({"duration": 0.02, "controls": CONTROLS}).arrays
+    unused = CONTROLS | {"press_force_4": 0.0}
+    four = yehu.simulate({"duration": 0.02, "controls": unused}).arrays
+    np.testing.assert_allclose(four["bridge_force"], one["bridge_force"], atol=1e-12)
+
+
+def test_a_sweep_may_be_of_notes_places_and_strings(refused):
+    vary = {"string": [1, 2], "note": [77, 79], "position": [0.1, 0.13]}
+    found = yehu.sweep({"stroke": {"speed": 0.2}, "duration": 0.1}, vary)
+    assert found.grid("regime").shape == (2, 2, 2)
+    assert list(found.axes) == list(vary)
+    refused("stroke.sped: unknown entry", yehu.sweep, {"stroke": {"sped": 0.2}}, vary)
+    two = {"controls": {"press_force_2": 1.0}}
+    refused("a sweep has one finger", yehu.sweep, two, {"bow_force": [0.5]})
+
+
 def test_a_run_is_saved_by_any_path_and_reported_in_a_line(tmp_path):
     run = yehu.simulate(GESTURE)
     run.save(str(tmp_path / "run.npz"))

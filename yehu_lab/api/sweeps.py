@@ -35,11 +35,14 @@ def sweep(
     Parameters
     ----------
     gesture : mapping or path
-        As of `simulate`. Bow and force begin at once, unless their curves say otherwise.
+        As of `simulate`. Bow and force begin at once, unless their curves say otherwise. Or strokes
+        of notes: a mapping with a ``stroke``, as a study has it (docs/sweep.md), and with
+        ``sample_rate``, ``duration`` and ``instrument`` if need be.
     vary : mapping
         Values by name: a control, such as ``bow_force``; ``bow_acceleration``, with which the bow
         begins from rest, up to its speed; or the path of another entry, such as
-        ``instrument.bow.mu_S``. A curve is scaled, so that its largest point becomes the value.
+        ``instrument.bow.mu_S``. A curve is scaled, so that its largest point becomes the value. Of
+        a stroke: ``note``, ``string``, ``position`` (beta), ``force``, ``speed`` and others.
     workers : int, optional
         Number of runs at a time; by default one for each core. The result is the same.
     progress : callable, optional
@@ -67,11 +70,12 @@ def sweep(
         raise ParameterError(
             f"{count} runs are more than {MAX_RUNS}; `yehu-server sweep` does any number"
         )
-    if isinstance(gesture, Mapping):
-        data = plain_gesture(gesture)
+    if isinstance(gesture, Mapping) and "stroke" in gesture:
+        study = study_of({**gesture, "vary": axes})
+    elif isinstance(gesture, Mapping):
+        study = study_of({"gesture": plain_gesture(gesture), "vary": axes})
     else:
-        data = dict(gesture_of(gesture).source)
-    study = study_of({"gesture": data, "vary": axes})
+        study = study_of({"gesture": dict(gesture_of(gesture).source), "vary": axes})
     most = None if workers is None else whole(workers, "workers", 1, MAX_WORKERS)
     get_ready([bow_stroke])
     return run_all(study, workers=most, progress=progress)

@@ -37,7 +37,7 @@ LABELS = {
 }
 # Points by which a map's share of Helmholtz motion is off with another sample rate than 44.1 kHz,
 # the mean of four notes: docs/validation.md.
-RATE_ERROR = 2.5
+RATE_ERROR = 3.3
 Array = Any
 EQUAL = 1.2  # steps or ratios that differ by less are equal
 WIDE = 5.0  # from which ratio uneven values are drawn by logarithms

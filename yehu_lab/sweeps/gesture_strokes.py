@@ -52,7 +52,8 @@ class GestureBow:
             if name in table.data:
                 table.add_error(name, "belongs into the gesture")
         gesture = table.table("gesture")
-        gesture_from(gesture, folder)
+        if gesture_from(gesture, folder).fingers > 1:
+            table.add_error("gesture", "a sweep has one finger")
         return cls(gesture.data, folder)
 
     def check(self, axes: Sequence[Axis]) -> None:

@@ -18,7 +18,7 @@ from yehu_lab.sweeps.axes import Axis, axis_from
 from yehu_lab.sweeps.gesture_strokes import GestureBow
 from yehu_lab.sweeps.note_strokes import NoteBow
 from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, V_B, X_B
-from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
+from yehu_server.core.physics.schelleng import lower_limit, resistance, upper_limit
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.scores.gesture import on_instrument
 from yehu_server.util.documents import Document, Fields
@@ -186,15 +186,16 @@ def limits_of(study: Study, at: Mapping[str, int]) -> Limits:
 
     string = 0 if end(F_N) >= 0.0 else 1
     bridge = float(model["bridge_x"])
-    stop = end(FINGER_CONTROLS) if end(FINGER_CONTROLS + 1) > 0.0 else 0.0
+    press = end(FINGER_CONTROLS + 1)
+    stop = end(FINGER_CONTROLS) if press > 0.0 else 0.0
     beta = (bridge - end(X_B)) / (bridge - stop)
     Z = float(np.sqrt(model["T"][string] * model["rho_A"][string]))  # noqa: N806 - as in physics
     grip = float(model["mu_S"] - model["mu_C"])
     frequency = float(stroke["frequency_hz"])
-    resistance = bridge_resistance(model, frequency)
+    R = resistance(model, string, frequency, stop, press)  # noqa: N806
     speed = abs(end(V_B))
     return Limits(
-        lower_limit(Z, grip, resistance, speed, beta),
+        lower_limit(Z, grip, R, speed, beta),
         upper_limit(Z, grip, speed, beta),
         beta,
         frequency,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -61,6 +61,15 @@ CONTROLS = {
         "of the finger; 0 lifts it off the strings"),
 }
 # fmt: on
+# Of finger 2, `finger_position_2` and `press_force_2`; and so on.
+ALL_CONTROLS = CONTROLS | {
+    f"{name}_{finger}": replace(
+        CONTROLS[name],
+        column=CONTROLS[name].column + layout.CONTROLS_PER_FINGER * (finger - 1),
+    )
+    for finger in range(2, layout.MAX_FINGERS + 1)
+    for name in ("finger_position", "press_force")
+}
 HAMMER_LIMIT = 1e4  # N
 
 
@@ -90,11 +99,19 @@ class Gesture:
         """Number of samples."""
         return round(self.duration * self.sample_rate)
 
+    @property
+    def fingers(self) -> int:
+        """Number of fingers: up to the last that has a control."""
+        columns = [ALL_CONTROLS[name].column - layout.FINGER_CONTROLS for name in self.controls]
+        return max(0, *columns, 0) // layout.CONTROLS_PER_FINGER + 1
+
     def control_rows(self) -> Floats:
         """The kernel's control array [shape=(frames, control columns)]."""
         time = np.arange(self.frames) / self.sample_rate
-        rows = np.zeros((self.frames, layout.control_columns(fingers=1)))
-        for name, control in CONTROLS.items():
+        rows = np.zeros((self.frames, layout.control_columns(self.fingers)))
+        for name, control in ALL_CONTROLS.items():
+            if control.column >= rows.shape[1]:
+                continue
             curve = self.controls.get(name, ((0.0, control.default),))
             times, values = zip(*curve, strict=True)
             rows[:, control.column] = np.interp(time, times, values)
@@ -146,14 +163,16 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
     controls = table.table("controls")
     curves = {
         name: controls.read(name, _curve, (), control.lo, control.hi, control.unit)
-        for name, control in CONTROLS.items()
+        for name, control in ALL_CONTROLS.items()
         if name in controls.data
     }
-    controls.refuse_others(*CONTROLS)
+    controls.refuse_others(*ALL_CONTROLS)
     shortest = min(string.L for string in quantities.strings)
-    for name in ("bow_position", "finger_position"):
+    for name, control in ALL_CONTROLS.items():
+        if not name.startswith(("bow_position", "finger_position")):
+            continue
         with controls.at(name):
-            for _, position in curves.get(name, ((0.0, CONTROLS[name].default),)):
+            for _, position in curves.get(name, ((0.0, control.default),)):
                 if not 0.0 < position < quantities.bridge_x:
                     bridge = f"the bridge ({quantities.bridge_x} m)"
                     raise ParameterError(f"{position} m is not between the loop (0) and {bridge}")

@@ -152,11 +152,13 @@ def simulate(
     Raises ParameterError where the quantities make no stable model at this rate; OutputError where
     the arrays would take more than MAX_BYTES.
     """
-    model = kernel.prepare(gesture.quantities, gesture.sample_rate)
+    fingers = gesture.fingers
+    model = kernel.prepare(gesture.quantities, gesture.sample_rate, fingers)
     more = refined.prepare(gesture.quantities, gesture.sample_rate)
     m = model[0]
     frames = gesture.frames
-    columns = layout.probe_columns(1) + layout.control_columns(1) + len(LEDGER) * energy
+    columns = layout.probe_columns(fingers) + layout.control_columns(fingers)
+    columns += len(LEDGER) * energy
     shapes = (frames // strings_every) * int(m["N"].sum() + STRINGS) if strings_every else 0
     if 8 * (frames * columns + shapes) > MAX_BYTES:
         raise OutputError(
@@ -169,7 +171,7 @@ def simulate(
         pluck_string(model, state, pluck.string - 1, pluck.position, pluck.amplitude)
 
     controls = gesture.control_rows()
-    probes = np.zeros((frames, layout.probe_columns(1)))
+    probes = np.zeros((frames, layout.probe_columns(fingers)))
     ledger = np.zeros((frames if energy else 0, len(LEDGER)))
     shaped: list[list[Floats]] = [[], []]
     hop = strings_every or CHUNK

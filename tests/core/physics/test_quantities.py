@@ -5,13 +5,20 @@ import math
 from dataclasses import fields, replace
 from importlib.resources import files
 from itertools import product
+from pathlib import Path
 
 import pytest
 
 from yehu_server.core.physics.grid import check_rate, intervals
 from yehu_server.core.physics.layout import MAX_INTERVALS
-from yehu_server.core.physics.quantities import Quantities, override, read_body
+from yehu_server.core.physics.quantities import (
+    Quantities,
+    override,
+    read_body,
+    read_quantities,
+)
 from yehu_server.errors import ParameterError
+from yehu_server.scores.gesture import gesture_from, on_instrument
 
 YEHU = Quantities()
 BODY = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())
@@ -188,3 +195,22 @@ def test_a_string_too_short_or_too_fine_for_its_grid_is_refused():
     slack = override(YEHU, {"string_1": {"L": 1.0, "T": 1.0, "E": 0.0, "sigma_1": 0.0}})
     with pytest.raises(ParameterError, match=str(MAX_INTERVALS)):
         intervals(slack.string_1, 1.0 / 192000.0)
+
+
+def test_the_papers_instrument_is_shipped_and_a_base_everywhere(tmp_path, monkeypatch):
+    """[Yehu] section 2: constant tension, no felt, one point of hair, no torsion."""
+    monkeypatch.chdir(tmp_path)
+    paper = override(Quantities(), {"base": "paper"})
+    plain = {"tension_modulation": 0.0, "felt_loss": 0.0, "tension_headroom": 1.0}
+    assert paper == override(Quantities(), plain)
+    refined = {"base": "paper", "torsion": "on", "bow": {"width": 0.008}}
+    assert override(paper, refined) == override(paper, {"torsion": "on", "bow": {"width": 0.008}})
+    assert read_quantities(Path("paper")) == paper
+    own = tmp_path / "mine.toml"
+    own.write_text('base = "paper"\nbridge_x = 0.29\n')
+    assert read_quantities(own) == replace(paper, bridge_x=0.29)
+    assert gesture_from({"instrument": {"base": "paper"}}).quantities == paper
+    named = on_instrument({}, Path("paper"))  # --instrument paper
+    assert gesture_from(named).quantities == paper
+    with pytest.raises(ParameterError, match="papper"):
+        override(Quantities(), {"base": "papper"})

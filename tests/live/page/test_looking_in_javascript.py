@@ -12,7 +12,7 @@ import pytest
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
+from yehu_server.core.physics.schelleng import lower_limit, resistance, upper_limit
 from yehu_server.core.player.commands import BEGIN
 
 RATE = 44100.0
@@ -80,7 +80,9 @@ def test_the_limits_are_schellengs_at_the_bows_speed_and_place(snapshots, instru
     Z = math.sqrt(m["T"][1] * m["rho_A"][1])
     grip = m["mu_S"] - m["mu_C"]
     speed, beta = abs(seen["speed"]), seen["beta"]
-    R = bridge_resistance(m, seen["frequency"])
+    stop = max(np.flatnonzero(seen["finger_press"]), key=lambda j: seen["finger_x"][j])
+    held = seen["finger_x"][stop], seen["finger_press"][stop]
+    R = resistance(m, 1, seen["frequency"], *held)
     limits = {
         "min": lower_limit(Z, grip, R, speed, beta),
         "max": upper_limit(Z, grip, speed, beta),

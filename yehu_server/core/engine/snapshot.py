@@ -35,7 +35,7 @@ from yehu_server.core.engine.rig import (
 from yehu_server.core.engine.telemetry import METERS, SHAPE_POINTS, displacement
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
-from yehu_server.core.physics.schelleng import bridge_resistance, lower_limit, upper_limit
+from yehu_server.core.physics.schelleng import lower_limit, resistance, upper_limit
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.parameter_indices import BOW_LENGTH
 from yehu_server.core.player.record import PLAYER
@@ -114,15 +114,19 @@ def snapshot(rig: Any, into: Any) -> None:
     out.beta = c.value[POSITION] * c.position_drift
     out.bow_x = c.bridge_x - out.beta * (c.bridge_x - c.sounding_from)
     out.hair_place, out.hair_length = c.bow_displacement, p.value[BOW_LENGTH]
+    stop, held = 0.0, 0.0
     for j in range(MAX_FINGERS):
         out.finger_x[j] = c.value[FINGER_POSITION[j]]
         press = c.value[FINGER_PRESS[j]]
         out.finger_press[j] = press if press > MIN_PRESS else 0.0
+        if press > MIN_PRESS and out.finger_x[j] > stop:
+            stop, held = out.finger_x[j], press
     out.upper = out.lower = 0.0
     if out.frequency > 0.0:  # not NaN
         Z, grip = math.sqrt(m.T[string] * m.rho_A[string]), m.mu_S - m.mu_C
         out.upper = upper_limit(Z, grip, 1.0, 1.0)
-        out.lower = lower_limit(Z, grip, bridge_resistance(m, out.frequency), 1.0, 1.0)
+        R = resistance(m, string, out.frequency, stop, held)
+        out.lower = lower_limit(Z, grip, R, 1.0, 1.0)
     for slot in range(SLOT_COUNT):
         out.targets[slot] = c.target[slot]
     for i in range(STRINGS):

@@ -16,6 +16,7 @@ from typing import Any
 from yehu_server.core.physics.layout import MAX_POINTS
 from yehu_server.errors import ParameterError
 from yehu_server.util.documents import Document, Fields
+from yehu_server.util.files import shipped_folder
 from yehu_server.util.values import brief, number
 from yehu_server.util.values import choice as chosen
 
@@ -259,7 +260,8 @@ def override(
     changes : mapping
         Nested by section, as in a gesture or instrument file:
         ``{"bow": {"epsilon_0": 3e4}, "string_1": {"T": 51.0}, "bridge_x": 0.3}``;
-        ``body`` names a body file, ``base`` an instrument file that takes the place of `base`.
+        ``body`` names a body file, ``base`` an instrument file, or a shipped one such as ``paper``,
+        that takes the place of `base`.
     folder : Path
         Where relative files are searched for.
 
@@ -316,6 +318,12 @@ def _checked(value: Any, item: Any) -> Any:
     return tuple(number(entry, lo, hi, unit) for entry in value)
 
 
+def instrument_file(path: Path) -> Path:
+    """The file that a path names: itself, or one that is shipped, such as ``paper``."""
+    shipped = shipped_folder("examples") / f"{path.name}.toml"
+    return shipped if not path.suffix and not path.is_file() and shipped.is_file() else path
+
+
 def read_quantities(path: Path) -> Quantities:
     """Read an instrument file (TOML, or JSON by its ending) of quantities to change.
 
@@ -328,6 +336,7 @@ def read_quantities(path: Path) -> Quantities:
 
 
 def _read_quantities(path: Path, depth: int) -> Quantities:
+    path = instrument_file(path)
     document = Document(path, "an instrument file").read(path)
     table = document.json() if path.suffix == ".json" else document.toml()
     return _override_all(Quantities(), table, path.parent, depth)

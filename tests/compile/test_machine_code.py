@@ -188,15 +188,54 @@ def test_a_damaged_file_is_reported_and_left_alone(kept, tmp_path, caplog):
     assert "damaged" in caplog.messages[0]
 
 
-def test_what_is_shipped_for_this_level_is_taken_where_nothing_is_kept(kept, tmp_path, monkeypatch):
-    shipped = tmp_path / "shipped"
-    shipped.mkdir()
-    write_checksummed(machine_code.file_in(shipped), kept)
+@pytest.fixture
+def shipped(kept, tmp_path, monkeypatch) -> Path:
+    """The folder of what a release brings, with the file of this level."""
+    folder = tmp_path / "shipped"
+    folder.mkdir()
+    made_for = machine_code.made_for(source_hash(is_shipped=True))
+    write_checksummed(machine_code.file_in(folder), changed(kept, **{"made for": made_for}))
+    monkeypatch.setattr(machine_code, "SHIPPED", folder)
     machine_code.loaded.cache_clear()
+    yield folder
+    machine_code.loaded.cache_clear()
+
+
+def test_what_is_shipped_for_this_level_is_taken_where_nothing_is_kept(
+    shipped, tmp_path, monkeypatch
+):
+    assert shipped.is_dir()
     assert machine_code.loaded(tmp_path / "empty", source_hash())
     machine_code.loaded.cache_clear()
     monkeypatch.setattr(levels, "level", lambda: "another")
     assert machine_code.loaded(tmp_path / "empty", source_hash()) == {}
+
+
+def test_what_is_shipped_fits_any_version_of_numba_and_what_is_kept_its_own(
+    shipped, kept, tmp_path, monkeypatch
+):
+    assert shipped.is_dir()
+    write_checksummed(machine_code.file_in(tmp_path), kept)
+    before = source_hash()
+    monkeypatch.setattr(cache_folder, "version", lambda _name: "99.0")
+    source_hash.cache_clear()
+    try:
+        assert source_hash() != before
+        assert machine_code.loaded(tmp_path / "empty", source_hash())
+        machine_code.file_in(shipped).unlink()
+        machine_code.loaded.cache_clear()
+        assert machine_code.loaded(tmp_path, source_hash()) == {}
+    finally:
+        source_hash.cache_clear()
+
+
+def test_functions_of_one_object_file_are_all_found_in_it(kept, tmp_path):
+    """As in what a release brings for ARM: the size of all but the first is 0."""
+    sizes = json.loads(kept.partition(b"\n")[0])["functions"]
+    (name, entry, size), *_ = sizes
+    twice = changed(kept, functions=[[name, entry, size], ["again", entry, 0]])
+    found = written(tmp_path, twice)
+    assert found[name] == found["again"] != 0
 
 
 def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):

@@ -100,7 +100,8 @@ class Player:
 
 def opened(parts: int, *texts: str) -> tuple[list[Player], MidiPorts, list[str]]:
     players, said = [Player() for _ in range(parts)], []
-    ports = MidiPorts(players, MidiOptions(routes=routes(*texts)), 0, range(parts), said.append)
+    options, memory = MidiOptions(routes=routes(*texts)), SimpleNamespace(inherited=[])
+    ports = MidiPorts(players, options, memory, range(parts), said.append)
     for number, name in enumerate(("first", "second", "third")):
         ports.on_event({"event": "appeared", "port": name, "number": number})
     return players, ports, said

@@ -223,6 +223,19 @@ def test_alsa_gives_14_bit_controllers_as_messages_no_system_exclusive_and_goes_
     monkeypatch.delitem(sys.modules, "yehu_server.live.midi.alsa_system")
 
 
+def test_over_jack_an_empty_message_is_no_message():
+    try:
+        from yehu_server.live.midi.jack_system import System
+    except (ImportError, OSError):
+        pytest.skip("there is no JACK library")
+    heard = Heard()
+    port = SimpleNamespace(incoming_midi_events=lambda: [(0, b""), (5, b"\x90\x45\x50")])
+    system = object.__new__(System)
+    system._open = ((port, heard.receive),)
+    system._process(64)
+    assert heard.messages == [[0x90, 0x45, 0x50]]
+
+
 # ---------------------------------------------------------------- which one
 
 

@@ -374,7 +374,7 @@ def test_a_name_that_no_port_has_is_reported_once_and_heard_when_it_comes():
     assert studio.reported() == [("vanished", {"port": "breath"})]
     said = []
     player = SimpleNamespace(learning=SimpleNamespace())
-    ports = MidiPorts([player], MidiOptions(), 0, [0], said.append)
+    ports = MidiPorts([player], MidiOptions(), SimpleNamespace(inherited=[]), [0], said.append)
     for _ in range(2):  # the MIDI system begins anew
         ports.on_event({"event": "missing", **missing})
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]

@@ -72,4 +72,5 @@ class System:
     def _process(self, _frames: int) -> None:
         for own, receive in self._open:
             for _offset, data in own.incoming_midi_events():
-                receive(list(bytes(data)))
+                if message := bytes(data):  # an exception would end the callbacks
+                    receive(message)

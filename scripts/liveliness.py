@@ -23,6 +23,7 @@ import soundfile
 from measures.motion import motion
 
 import yehu_server as yehu
+from yehu_server.playing.options import LIVE
 from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.reading import read_any
 from yehu_server.scores.score import notes_of
@@ -71,13 +72,13 @@ MAPPINGS = {"mpe_phrase.mid": "mpe", "slow_air.mid": "keyboard-expressive"}
 
 def played_live(name: str, seed: int, *, dry: bool, phrasing: float | None = None) -> Any:
     """A take of a tune's notes, as a keyboard sends them to the live instrument's first sound."""
-    settings = {} if phrasing is None else {"/playing/phrasing": phrasing}
+    settings = LIVE if phrasing is None else {**LIVE, "/playing/phrasing": phrasing}
     preset = "vibrato" if dry else "vibrato+study"
     player = yehu.Instrument(RATE, preset=preset, settings=settings, stereo=not dry, seed=seed)
     notes = [note for note in notes_of(read_any(EXAMPLES / name)) if note.end_s < LONGEST_S]
     for note in notes:
         player.note_on(note.key, velocity=80, at=note.start_s)
-        player.note_off(note.key, at=note.end_s - 0.02)
+        player.note_off(note.key, at=note.end_s - 0.01)
     sound = player.play(notes[-1].end_s + 1.0)
     return sound if dry else sound.mean(axis=1)
 

@@ -5533,14 +5533,14 @@
       104,
       48
      ],
-     "varname": "/playing/section",
+     "varname": "/playing/left_hand",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/section",
-       "parameter_shortname": "section",
-       "parameter_mmin": 1.0,
-       "parameter_mmax": 16.0,
+       "parameter_longname": "/playing/left_hand",
+       "parameter_shortname": "left hand",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -5560,7 +5560,7 @@
       104,
       22
      ],
-     "text": "1 to 16",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       912,
@@ -5599,14 +5599,14 @@
      "patching_rect": [
       117.0,
       3516,
-      203,
+      217,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/section"
+     "text": "route /yehu/playing/left_hand"
     }
    },
    {
@@ -5616,7 +5616,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      358.0,
       3516,
       91,
       22
@@ -5654,13 +5654,13 @@
      "patching_rect": [
       152.0,
       3546,
-      217,
+      231,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/section"
+     "text": "prepend /yehu/playing/left_hand"
     }
    },
    {
@@ -5670,7 +5670,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      407.0,
       3546,
       98,
       22
@@ -5702,17 +5702,17 @@
       104,
       48
      ],
-     "varname": "/playing/attack",
+     "varname": "/playing/section",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/attack",
-       "parameter_shortname": "attack",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 500.0,
+       "parameter_longname": "/playing/section",
+       "parameter_shortname": "section",
+       "parameter_mmin": 1.0,
+       "parameter_mmax": 16.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -5729,7 +5729,7 @@
       104,
       22
      ],
-     "text": "5 to 500 ms",
+     "text": "1 to 16",
      "presentation": 1,
      "presentation_rect": [
       1024,
@@ -5768,14 +5768,14 @@
      "patching_rect": [
       117.0,
       3576,
-      196,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/attack"
+     "text": "route /yehu/playing/section"
     }
    },
    {
@@ -5785,7 +5785,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      344.0,
       3576,
       91,
       22
@@ -5805,13 +5805,13 @@
      "patching_rect": [
       16.0,
       3606,
-      119,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 40"
+     "text": "loadmess set 1"
     }
    },
    {
@@ -5821,15 +5821,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      159.0,
+      152.0,
       3606,
-      210,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/attack"
+     "text": "prepend /yehu/playing/section"
     }
    },
    {
@@ -5871,14 +5871,14 @@
       104,
       48
      ],
-     "varname": "/playing/release",
+     "varname": "/playing/attack",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/release",
-       "parameter_shortname": "release",
+       "parameter_longname": "/playing/attack",
+       "parameter_shortname": "attack",
        "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_mmax": 500.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f ms"
@@ -5898,7 +5898,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "5 to 500 ms",
      "presentation": 1,
      "presentation_rect": [
       16,
@@ -5937,14 +5937,14 @@
      "patching_rect": [
       117.0,
       3636,
-      203,
+      196,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/release"
+     "text": "route /yehu/playing/attack"
     }
    },
    {
@@ -5954,7 +5954,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      337.0,
       3636,
       91,
       22
@@ -5980,7 +5980,7 @@
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 60"
+     "text": "loadmess set 40"
     }
    },
    {
@@ -5992,13 +5992,13 @@
      "patching_rect": [
       159.0,
       3666,
-      217,
+      210,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/release"
+     "text": "prepend /yehu/playing/attack"
     }
    },
    {
@@ -6008,7 +6008,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      400.0,
+      393.0,
       3666,
       98,
       22
@@ -6040,17 +6040,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento",
+     "varname": "/playing/release",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento",
-       "parameter_shortname": "portamento",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/playing/release",
+       "parameter_shortname": "release",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f ms"
       }
      }
     }
@@ -6067,7 +6067,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "5 to 2000 ms",
      "presentation": 1,
      "presentation_rect": [
       128,
@@ -6106,14 +6106,14 @@
      "patching_rect": [
       117.0,
       3696,
-      224,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento"
+     "text": "route /yehu/playing/release"
     }
    },
    {
@@ -6123,7 +6123,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      365.0,
+      344.0,
       3696,
       91,
       22
@@ -6143,13 +6143,13 @@
      "patching_rect": [
       16.0,
       3726,
-      112,
+      119,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 60"
     }
    },
    {
@@ -6159,15 +6159,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      159.0,
       3726,
-      238,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento"
+     "text": "prepend /yehu/playing/release"
     }
    },
    {
@@ -6177,7 +6177,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      414.0,
+      400.0,
       3726,
       98,
       22
@@ -6209,17 +6209,17 @@
       104,
       48
      ],
-     "varname": "/playing/portamento_time",
+     "varname": "/playing/portamento",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/playing/portamento_time",
-       "parameter_shortname": "portamento time",
-       "parameter_mmin": 5.0,
-       "parameter_mmax": 2000.0,
+       "parameter_longname": "/playing/portamento",
+       "parameter_shortname": "portamento",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f ms"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -6236,7 +6236,7 @@
       104,
       22
      ],
-     "text": "5 to 2000 ms",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       240,
@@ -6275,14 +6275,14 @@
      "patching_rect": [
       117.0,
       3756,
-      259,
+      224,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/playing/portamento_time"
+     "text": "route /yehu/playing/portamento"
     }
    },
    {
@@ -6292,7 +6292,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      400.0,
+      365.0,
       3756,
       91,
       22
@@ -6312,13 +6312,13 @@
      "patching_rect": [
       16.0,
       3786,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 120"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -6328,15 +6328,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       3786,
-      273,
+      238,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/playing/portamento_time"
+     "text": "prepend /yehu/playing/portamento"
     }
    },
    {
@@ -6346,7 +6346,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      463.0,
+      414.0,
       3786,
       98,
       22
@@ -6358,6 +6358,175 @@
    {
     "box": {
      "id": "obj-302",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      352,
+      646,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      646,
+      104,
+      48
+     ],
+     "varname": "/playing/portamento_time",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/playing/portamento_time",
+       "parameter_shortname": "portamento time",
+       "parameter_mmin": 5.0,
+       "parameter_mmax": 2000.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f ms"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-303",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      352,
+      696,
+      104,
+      22
+     ],
+     "text": "5 to 2000 ms",
+     "presentation": 1,
+     "presentation_rect": [
+      352,
+      696,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-304",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3816,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-305",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3816,
+      259,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-306",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      400.0,
+      3816,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-307",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3846,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 120"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-308",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      3846,
+      273,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/playing/portamento_time"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-309",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      463.0,
+      3846,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-310",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6380,7 +6549,7 @@
    },
    {
     "box": {
-     "id": "obj-303",
+     "id": "obj-311",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6418,7 +6587,7 @@
    },
    {
     "box": {
-     "id": "obj-304",
+     "id": "obj-312",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6432,175 +6601,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      794,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-305",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      3816,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-306",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      3816,
-      161,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/bow/speed"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-307",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      302.0,
-      3816,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-308",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      3846,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-309",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      3846,
-      175,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/speed"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-310",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      351.0,
-      3846,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-311",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      744,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      744,
-      104,
-      48
-     ],
-     "varname": "/bow/side",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/bow/side",
-       "parameter_shortname": "side",
-       "parameter_mmin": -1.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-312",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      794,
-      104,
-      22
-     ],
-     "text": "-1 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       794,
       104,
       22
@@ -6636,14 +6636,14 @@
      "patching_rect": [
       117.0,
       3876,
-      154,
+      161,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/bow/side"
+     "text": "route /yehu/bow/speed"
     }
    },
    {
@@ -6653,7 +6653,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      295.0,
+      302.0,
       3876,
       91,
       22
@@ -6691,13 +6691,13 @@
      "patching_rect": [
       152.0,
       3906,
-      168,
+      175,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/bow/side"
+     "text": "prepend /yehu/bow/speed"
     }
    },
    {
@@ -6707,7 +6707,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      344.0,
+      351.0,
       3906,
       98,
       22
@@ -6719,6 +6719,175 @@
    {
     "box": {
      "id": "obj-319",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      128,
+      744,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      744,
+      104,
+      48
+     ],
+     "varname": "/bow/side",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/side",
+       "parameter_shortname": "side",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-320",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      128,
+      794,
+      104,
+      22
+     ],
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      128,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-321",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3936,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-322",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      3936,
+      154,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-323",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      295.0,
+      3936,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-324",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      3966,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-325",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      3966,
+      168,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/side"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-326",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      344.0,
+      3966,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-327",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6756,7 +6925,7 @@
    },
    {
     "box": {
-     "id": "obj-320",
+     "id": "obj-328",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6780,13 +6949,13 @@
    },
    {
     "box": {
-     "id": "obj-321",
+     "id": "obj-329",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3936,
+      3996,
       77,
       22
      ],
@@ -6798,13 +6967,13 @@
    },
    {
     "box": {
-     "id": "obj-322",
+     "id": "obj-330",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3936,
+      3996,
       161,
       22
      ],
@@ -6817,13 +6986,13 @@
    },
    {
     "box": {
-     "id": "obj-323",
+     "id": "obj-331",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      3936,
+      3996,
       91,
       22
      ],
@@ -6835,13 +7004,13 @@
    },
    {
     "box": {
-     "id": "obj-324",
+     "id": "obj-332",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3966,
+      4026,
       126,
       22
      ],
@@ -6853,13 +7022,13 @@
    },
    {
     "box": {
-     "id": "obj-325",
+     "id": "obj-333",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      3966,
+      4026,
       175,
       22
      ],
@@ -6871,13 +7040,13 @@
    },
    {
     "box": {
-     "id": "obj-326",
+     "id": "obj-334",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      3966,
+      4026,
       98,
       22
      ],
@@ -6887,7 +7056,7 @@
    },
    {
     "box": {
-     "id": "obj-327",
+     "id": "obj-335",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -6925,7 +7094,7 @@
    },
    {
     "box": {
-     "id": "obj-328",
+     "id": "obj-336",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -6949,13 +7118,13 @@
    },
    {
     "box": {
-     "id": "obj-329",
+     "id": "obj-337",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      3996,
+      4056,
       77,
       22
      ],
@@ -6967,13 +7136,13 @@
    },
    {
     "box": {
-     "id": "obj-330",
+     "id": "obj-338",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      3996,
+      4056,
       182,
       22
      ],
@@ -6986,13 +7155,13 @@
    },
    {
     "box": {
-     "id": "obj-331",
+     "id": "obj-339",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      3996,
+      4056,
       91,
       22
      ],
@@ -7004,13 +7173,13 @@
    },
    {
     "box": {
-     "id": "obj-332",
+     "id": "obj-340",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4026,
+      4086,
       126,
       22
      ],
@@ -7022,13 +7191,13 @@
    },
    {
     "box": {
-     "id": "obj-333",
+     "id": "obj-341",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      4026,
+      4086,
       196,
       22
      ],
@@ -7040,13 +7209,13 @@
    },
    {
     "box": {
-     "id": "obj-334",
+     "id": "obj-342",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4026,
+      4086,
       98,
       22
      ],
@@ -7056,7 +7225,7 @@
    },
    {
     "box": {
-     "id": "obj-335",
+     "id": "obj-343",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7094,7 +7263,7 @@
    },
    {
     "box": {
-     "id": "obj-336",
+     "id": "obj-344",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7118,13 +7287,13 @@
    },
    {
     "box": {
-     "id": "obj-337",
+     "id": "obj-345",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4056,
+      4116,
       77,
       22
      ],
@@ -7136,13 +7305,13 @@
    },
    {
     "box": {
-     "id": "obj-338",
+     "id": "obj-346",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4056,
+      4116,
       168,
       22
      ],
@@ -7155,13 +7324,13 @@
    },
    {
     "box": {
-     "id": "obj-339",
+     "id": "obj-347",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      4056,
+      4116,
       91,
       22
      ],
@@ -7173,13 +7342,13 @@
    },
    {
     "box": {
-     "id": "obj-340",
+     "id": "obj-348",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4086,
+      4146,
       112,
       22
      ],
@@ -7191,13 +7360,13 @@
    },
    {
     "box": {
-     "id": "obj-341",
+     "id": "obj-349",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4086,
+      4146,
       182,
       22
      ],
@@ -7209,13 +7378,13 @@
    },
    {
     "box": {
-     "id": "obj-342",
+     "id": "obj-350",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       358.0,
-      4086,
+      4146,
       98,
       22
      ],
@@ -7225,7 +7394,7 @@
    },
    {
     "box": {
-     "id": "obj-343",
+     "id": "obj-351",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7263,7 +7432,7 @@
    },
    {
     "box": {
-     "id": "obj-344",
+     "id": "obj-352",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7287,13 +7456,13 @@
    },
    {
     "box": {
-     "id": "obj-345",
+     "id": "obj-353",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4116,
+      4176,
       77,
       22
      ],
@@ -7305,13 +7474,13 @@
    },
    {
     "box": {
-     "id": "obj-346",
+     "id": "obj-354",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4116,
+      4176,
       182,
       22
      ],
@@ -7324,13 +7493,13 @@
    },
    {
     "box": {
-     "id": "obj-347",
+     "id": "obj-355",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      4116,
+      4176,
       91,
       22
      ],
@@ -7342,13 +7511,13 @@
    },
    {
     "box": {
-     "id": "obj-348",
+     "id": "obj-356",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4146,
+      4206,
       133,
       22
      ],
@@ -7360,13 +7529,13 @@
    },
    {
     "box": {
-     "id": "obj-349",
+     "id": "obj-357",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4146,
+      4206,
       196,
       22
      ],
@@ -7378,13 +7547,13 @@
    },
    {
     "box": {
-     "id": "obj-350",
+     "id": "obj-358",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      4146,
+      4206,
       98,
       22
      ],
@@ -7394,7 +7563,7 @@
    },
    {
     "box": {
-     "id": "obj-351",
+     "id": "obj-359",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7432,7 +7601,7 @@
    },
    {
     "box": {
-     "id": "obj-352",
+     "id": "obj-360",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7446,175 +7615,6 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      794,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-353",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4176,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-354",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4176,
-      175,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/bow/tremolo"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-355",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      316.0,
-      4176,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-356",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4206,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-357",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4206,
-      189,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/bow/tremolo"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-358",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      365.0,
-      4206,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-359",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      800,
-      744,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      744,
-      104,
-      48
-     ],
-     "varname": "/bow/tremolo_depth",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/bow/tremolo_depth",
-       "parameter_shortname": "tremolo depth",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-360",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      800,
-      794,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      800,
       794,
       104,
       22
@@ -7650,14 +7650,14 @@
      "patching_rect": [
       117.0,
       4236,
-      217,
+      175,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/bow/tremolo_depth"
+     "text": "route /yehu/bow/tremolo"
     }
    },
    {
@@ -7667,7 +7667,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      358.0,
+      316.0,
       4236,
       91,
       22
@@ -7705,13 +7705,13 @@
      "patching_rect": [
       152.0,
       4266,
-      231,
+      189,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/bow/tremolo_depth"
+     "text": "prepend /yehu/bow/tremolo"
     }
    },
    {
@@ -7721,7 +7721,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      407.0,
+      365.0,
       4266,
       98,
       22
@@ -7733,6 +7733,175 @@
    {
     "box": {
      "id": "obj-367",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      800,
+      744,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      744,
+      104,
+      48
+     ],
+     "varname": "/bow/tremolo_depth",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/bow/tremolo_depth",
+       "parameter_shortname": "tremolo depth",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-368",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      800,
+      794,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      794,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-369",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4296,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-370",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      4296,
+      217,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/bow/tremolo_depth"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-371",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      358.0,
+      4296,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-372",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      4326,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-373",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      4326,
+      231,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/bow/tremolo_depth"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-374",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      407.0,
+      4326,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-375",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7770,7 +7939,7 @@
    },
    {
     "box": {
-     "id": "obj-368",
+     "id": "obj-376",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7794,13 +7963,13 @@
    },
    {
     "box": {
-     "id": "obj-369",
+     "id": "obj-377",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4296,
+      4356,
       77,
       22
      ],
@@ -7812,13 +7981,13 @@
    },
    {
     "box": {
-     "id": "obj-370",
+     "id": "obj-378",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4296,
+      4356,
       161,
       22
      ],
@@ -7831,13 +8000,13 @@
    },
    {
     "box": {
-     "id": "obj-371",
+     "id": "obj-379",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      4296,
+      4356,
       91,
       22
      ],
@@ -7849,13 +8018,13 @@
    },
    {
     "box": {
-     "id": "obj-372",
+     "id": "obj-380",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4326,
+      4386,
       140,
       22
      ],
@@ -7867,13 +8036,13 @@
    },
    {
     "box": {
-     "id": "obj-373",
+     "id": "obj-381",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       180.0,
-      4326,
+      4386,
       175,
       22
      ],
@@ -7885,13 +8054,13 @@
    },
    {
     "box": {
-     "id": "obj-374",
+     "id": "obj-382",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      4326,
+      4386,
       98,
       22
      ],
@@ -7901,7 +8070,7 @@
    },
    {
     "box": {
-     "id": "obj-375",
+     "id": "obj-383",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7924,7 +8093,7 @@
    },
    {
     "box": {
-     "id": "obj-376",
+     "id": "obj-384",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -7962,7 +8131,7 @@
    },
    {
     "box": {
-     "id": "obj-377",
+     "id": "obj-385",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -7986,13 +8155,13 @@
    },
    {
     "box": {
-     "id": "obj-378",
+     "id": "obj-386",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4356,
+      4416,
       77,
       22
      ],
@@ -8004,13 +8173,13 @@
    },
    {
     "box": {
-     "id": "obj-379",
+     "id": "obj-387",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4356,
+      4416,
       217,
       22
      ],
@@ -8023,13 +8192,13 @@
    },
    {
     "box": {
-     "id": "obj-380",
+     "id": "obj-388",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4356,
+      4416,
       91,
       22
      ],
@@ -8041,13 +8210,13 @@
    },
    {
     "box": {
-     "id": "obj-381",
+     "id": "obj-389",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4386,
+      4446,
       133,
       22
      ],
@@ -8059,13 +8228,13 @@
    },
    {
     "box": {
-     "id": "obj-382",
+     "id": "obj-390",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4386,
+      4446,
       231,
       22
      ],
@@ -8077,13 +8246,13 @@
    },
    {
     "box": {
-     "id": "obj-383",
+     "id": "obj-391",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4386,
+      4446,
       98,
       22
      ],
@@ -8093,7 +8262,7 @@
    },
    {
     "box": {
-     "id": "obj-384",
+     "id": "obj-392",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8131,7 +8300,7 @@
    },
    {
     "box": {
-     "id": "obj-385",
+     "id": "obj-393",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8155,13 +8324,13 @@
    },
    {
     "box": {
-     "id": "obj-386",
+     "id": "obj-394",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4416,
+      4476,
       77,
       22
      ],
@@ -8173,13 +8342,13 @@
    },
    {
     "box": {
-     "id": "obj-387",
+     "id": "obj-395",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4416,
+      4476,
       196,
       22
      ],
@@ -8192,13 +8361,13 @@
    },
    {
     "box": {
-     "id": "obj-388",
+     "id": "obj-396",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4416,
+      4476,
       91,
       22
      ],
@@ -8210,13 +8379,13 @@
    },
    {
     "box": {
-     "id": "obj-389",
+     "id": "obj-397",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4446,
+      4506,
       112,
       22
      ],
@@ -8228,13 +8397,13 @@
    },
    {
     "box": {
-     "id": "obj-390",
+     "id": "obj-398",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4446,
+      4506,
       210,
       22
      ],
@@ -8246,13 +8415,13 @@
    },
    {
     "box": {
-     "id": "obj-391",
+     "id": "obj-399",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4446,
+      4506,
       98,
       22
      ],
@@ -8262,7 +8431,7 @@
    },
    {
     "box": {
-     "id": "obj-392",
+     "id": "obj-400",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8300,7 +8469,7 @@
    },
    {
     "box": {
-     "id": "obj-393",
+     "id": "obj-401",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8324,13 +8493,13 @@
    },
    {
     "box": {
-     "id": "obj-394",
+     "id": "obj-402",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4476,
+      4536,
       77,
       22
      ],
@@ -8342,13 +8511,13 @@
    },
    {
     "box": {
-     "id": "obj-395",
+     "id": "obj-403",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4476,
+      4536,
       217,
       22
      ],
@@ -8361,13 +8530,13 @@
    },
    {
     "box": {
-     "id": "obj-396",
+     "id": "obj-404",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4476,
+      4536,
       91,
       22
      ],
@@ -8379,13 +8548,13 @@
    },
    {
     "box": {
-     "id": "obj-397",
+     "id": "obj-405",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4506,
+      4566,
       133,
       22
      ],
@@ -8397,13 +8566,13 @@
    },
    {
     "box": {
-     "id": "obj-398",
+     "id": "obj-406",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4506,
+      4566,
       231,
       22
      ],
@@ -8415,13 +8584,13 @@
    },
    {
     "box": {
-     "id": "obj-399",
+     "id": "obj-407",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4506,
+      4566,
       98,
       22
      ],
@@ -8431,7 +8600,7 @@
    },
    {
     "box": {
-     "id": "obj-400",
+     "id": "obj-408",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8469,7 +8638,7 @@
    },
    {
     "box": {
-     "id": "obj-401",
+     "id": "obj-409",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8493,13 +8662,13 @@
    },
    {
     "box": {
-     "id": "obj-402",
+     "id": "obj-410",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4536,
+      4596,
       77,
       22
      ],
@@ -8511,13 +8680,13 @@
    },
    {
     "box": {
-     "id": "obj-403",
+     "id": "obj-411",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4536,
+      4596,
       196,
       22
      ],
@@ -8530,13 +8699,13 @@
    },
    {
     "box": {
-     "id": "obj-404",
+     "id": "obj-412",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4536,
+      4596,
       91,
       22
      ],
@@ -8548,13 +8717,13 @@
    },
    {
     "box": {
-     "id": "obj-405",
+     "id": "obj-413",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4566,
+      4626,
       112,
       22
      ],
@@ -8566,13 +8735,13 @@
    },
    {
     "box": {
-     "id": "obj-406",
+     "id": "obj-414",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4566,
+      4626,
       210,
       22
      ],
@@ -8584,13 +8753,13 @@
    },
    {
     "box": {
-     "id": "obj-407",
+     "id": "obj-415",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4566,
+      4626,
       98,
       22
      ],
@@ -8600,7 +8769,7 @@
    },
    {
     "box": {
-     "id": "obj-408",
+     "id": "obj-416",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8638,7 +8807,7 @@
    },
    {
     "box": {
-     "id": "obj-409",
+     "id": "obj-417",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8662,13 +8831,13 @@
    },
    {
     "box": {
-     "id": "obj-410",
+     "id": "obj-418",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4596,
+      4656,
       77,
       22
      ],
@@ -8680,13 +8849,13 @@
    },
    {
     "box": {
-     "id": "obj-411",
+     "id": "obj-419",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4596,
+      4656,
       217,
       22
      ],
@@ -8699,13 +8868,13 @@
    },
    {
     "box": {
-     "id": "obj-412",
+     "id": "obj-420",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4596,
+      4656,
       91,
       22
      ],
@@ -8717,13 +8886,13 @@
    },
    {
     "box": {
-     "id": "obj-413",
+     "id": "obj-421",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4626,
+      4686,
       133,
       22
      ],
@@ -8735,13 +8904,13 @@
    },
    {
     "box": {
-     "id": "obj-414",
+     "id": "obj-422",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4626,
+      4686,
       231,
       22
      ],
@@ -8753,13 +8922,13 @@
    },
    {
     "box": {
-     "id": "obj-415",
+     "id": "obj-423",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4626,
+      4686,
       98,
       22
      ],
@@ -8769,7 +8938,7 @@
    },
    {
     "box": {
-     "id": "obj-416",
+     "id": "obj-424",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8807,7 +8976,7 @@
    },
    {
     "box": {
-     "id": "obj-417",
+     "id": "obj-425",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -8831,13 +9000,13 @@
    },
    {
     "box": {
-     "id": "obj-418",
+     "id": "obj-426",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4656,
+      4716,
       77,
       22
      ],
@@ -8849,13 +9018,13 @@
    },
    {
     "box": {
-     "id": "obj-419",
+     "id": "obj-427",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4656,
+      4716,
       196,
       22
      ],
@@ -8868,13 +9037,13 @@
    },
    {
     "box": {
-     "id": "obj-420",
+     "id": "obj-428",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4656,
+      4716,
       91,
       22
      ],
@@ -8886,13 +9055,13 @@
    },
    {
     "box": {
-     "id": "obj-421",
+     "id": "obj-429",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4686,
+      4746,
       112,
       22
      ],
@@ -8904,13 +9073,13 @@
    },
    {
     "box": {
-     "id": "obj-422",
+     "id": "obj-430",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4686,
+      4746,
       210,
       22
      ],
@@ -8922,13 +9091,13 @@
    },
    {
     "box": {
-     "id": "obj-423",
+     "id": "obj-431",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4686,
+      4746,
       98,
       22
      ],
@@ -8938,7 +9107,7 @@
    },
    {
     "box": {
-     "id": "obj-424",
+     "id": "obj-432",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -8976,7 +9145,7 @@
    },
    {
     "box": {
-     "id": "obj-425",
+     "id": "obj-433",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9000,13 +9169,13 @@
    },
    {
     "box": {
-     "id": "obj-426",
+     "id": "obj-434",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4716,
+      4776,
       77,
       22
      ],
@@ -9018,13 +9187,13 @@
    },
    {
     "box": {
-     "id": "obj-427",
+     "id": "obj-435",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4716,
+      4776,
       217,
       22
      ],
@@ -9037,13 +9206,13 @@
    },
    {
     "box": {
-     "id": "obj-428",
+     "id": "obj-436",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      4716,
+      4776,
       91,
       22
      ],
@@ -9055,13 +9224,13 @@
    },
    {
     "box": {
-     "id": "obj-429",
+     "id": "obj-437",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4746,
+      4806,
       133,
       22
      ],
@@ -9073,13 +9242,13 @@
    },
    {
     "box": {
-     "id": "obj-430",
+     "id": "obj-438",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      4746,
+      4806,
       231,
       22
      ],
@@ -9091,13 +9260,13 @@
    },
    {
     "box": {
-     "id": "obj-431",
+     "id": "obj-439",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       428.0,
-      4746,
+      4806,
       98,
       22
      ],
@@ -9107,7 +9276,7 @@
    },
    {
     "box": {
-     "id": "obj-432",
+     "id": "obj-440",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9145,7 +9314,7 @@
    },
    {
     "box": {
-     "id": "obj-433",
+     "id": "obj-441",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9169,13 +9338,13 @@
    },
    {
     "box": {
-     "id": "obj-434",
+     "id": "obj-442",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4776,
+      4836,
       77,
       22
      ],
@@ -9187,13 +9356,13 @@
    },
    {
     "box": {
-     "id": "obj-435",
+     "id": "obj-443",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      4776,
+      4836,
       196,
       22
      ],
@@ -9206,13 +9375,13 @@
    },
    {
     "box": {
-     "id": "obj-436",
+     "id": "obj-444",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      4776,
+      4836,
       91,
       22
      ],
@@ -9224,13 +9393,13 @@
    },
    {
     "box": {
-     "id": "obj-437",
+     "id": "obj-445",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      4806,
+      4866,
       112,
       22
      ],
@@ -9242,13 +9411,13 @@
    },
    {
     "box": {
-     "id": "obj-438",
+     "id": "obj-446",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      4806,
+      4866,
       210,
       22
      ],
@@ -9260,13 +9429,13 @@
    },
    {
     "box": {
-     "id": "obj-439",
+     "id": "obj-447",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      4806,
+      4866,
       98,
       22
      ],
@@ -9276,7 +9445,7 @@
    },
    {
     "box": {
-     "id": "obj-440",
+     "id": "obj-448",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9299,7 +9468,7 @@
    },
    {
     "box": {
-     "id": "obj-441",
+     "id": "obj-449",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9337,7 +9506,7 @@
    },
    {
     "box": {
-     "id": "obj-442",
+     "id": "obj-450",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9351,175 +9520,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      990,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-443",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4836,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-444",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      4836,
-      189,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/vibrato/depth"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-445",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      330.0,
-      4836,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-446",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      4866,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-447",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      4866,
-      203,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/vibrato/depth"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-448",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      379.0,
-      4866,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-449",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      940,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      940,
-      104,
-      48
-     ],
-     "varname": "/vibrato/press",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/vibrato/press",
-       "parameter_shortname": "press",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-450",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      990,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       990,
       104,
       22
@@ -9562,7 +9562,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/vibrato/press"
+     "text": "route /yehu/vibrato/depth"
     }
    },
    {
@@ -9616,7 +9616,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/vibrato/press"
+     "text": "prepend /yehu/vibrato/depth"
     }
    },
    {
@@ -9642,7 +9642,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      240,
+      128,
       940,
       104,
       48
@@ -9653,18 +9653,18 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      240,
+      128,
       940,
       104,
       48
      ],
-     "varname": "/vibrato/upward",
+     "varname": "/vibrato/press",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/vibrato/upward",
-       "parameter_shortname": "upward",
-       "parameter_mmin": -1.0,
+       "parameter_longname": "/vibrato/press",
+       "parameter_shortname": "press",
+       "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
@@ -9680,15 +9680,15 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      240,
+      128,
       990,
       104,
       22
      ],
-     "text": "-1 to 1",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      240,
+      128,
       990,
       104,
       22
@@ -9724,14 +9724,14 @@
      "patching_rect": [
       117.0,
       4956,
-      196,
+      189,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/vibrato/upward"
+     "text": "route /yehu/vibrato/press"
     }
    },
    {
@@ -9741,7 +9741,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      337.0,
+      330.0,
       4956,
       91,
       22
@@ -9779,13 +9779,13 @@
      "patching_rect": [
       152.0,
       4986,
-      210,
+      203,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/vibrato/upward"
+     "text": "prepend /yehu/vibrato/press"
     }
    },
    {
@@ -9795,7 +9795,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      386.0,
+      379.0,
       4986,
       98,
       22
@@ -9807,6 +9807,175 @@
    {
     "box": {
      "id": "obj-465",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      940,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      940,
+      104,
+      48
+     ],
+     "varname": "/vibrato/upward",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/vibrato/upward",
+       "parameter_shortname": "upward",
+       "parameter_mmin": -1.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-466",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "text": "-1 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      990,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-467",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5016,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-468",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5016,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/vibrato/upward"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-469",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      5016,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-470",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5046,
+      112,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-471",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      152.0,
+      5046,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/vibrato/upward"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-472",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      386.0,
+      5046,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-473",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -9844,7 +10013,7 @@
    },
    {
     "box": {
-     "id": "obj-466",
+     "id": "obj-474",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -9868,13 +10037,13 @@
    },
    {
     "box": {
-     "id": "obj-467",
+     "id": "obj-475",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5016,
+      5076,
       77,
       22
      ],
@@ -9886,13 +10055,13 @@
    },
    {
     "box": {
-     "id": "obj-468",
+     "id": "obj-476",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5016,
+      5076,
       182,
       22
      ],
@@ -9905,13 +10074,13 @@
    },
    {
     "box": {
-     "id": "obj-469",
+     "id": "obj-477",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      5016,
+      5076,
       91,
       22
      ],
@@ -9923,13 +10092,13 @@
    },
    {
     "box": {
-     "id": "obj-470",
+     "id": "obj-478",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5046,
+      5106,
       112,
       22
      ],
@@ -9941,13 +10110,13 @@
    },
    {
     "box": {
-     "id": "obj-471",
+     "id": "obj-479",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5046,
+      5106,
       196,
       22
      ],
@@ -9959,13 +10128,13 @@
    },
    {
     "box": {
-     "id": "obj-472",
+     "id": "obj-480",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      5046,
+      5106,
       98,
       22
      ],
@@ -9975,7 +10144,7 @@
    },
    {
     "box": {
-     "id": "obj-473",
+     "id": "obj-481",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10013,7 +10182,7 @@
    },
    {
     "box": {
-     "id": "obj-474",
+     "id": "obj-482",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10037,13 +10206,13 @@
    },
    {
     "box": {
-     "id": "obj-475",
+     "id": "obj-483",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5076,
+      5136,
       77,
       22
      ],
@@ -10055,13 +10224,13 @@
    },
    {
     "box": {
-     "id": "obj-476",
+     "id": "obj-484",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5076,
+      5136,
       189,
       22
      ],
@@ -10074,13 +10243,13 @@
    },
    {
     "box": {
-     "id": "obj-477",
+     "id": "obj-485",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      5076,
+      5136,
       91,
       22
      ],
@@ -10092,13 +10261,13 @@
    },
    {
     "box": {
-     "id": "obj-478",
+     "id": "obj-486",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5106,
+      5166,
       112,
       22
      ],
@@ -10110,13 +10279,13 @@
    },
    {
     "box": {
-     "id": "obj-479",
+     "id": "obj-487",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5106,
+      5166,
       203,
       22
      ],
@@ -10128,13 +10297,13 @@
    },
    {
     "box": {
-     "id": "obj-480",
+     "id": "obj-488",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      5106,
+      5166,
       98,
       22
      ],
@@ -10144,7 +10313,7 @@
    },
    {
     "box": {
-     "id": "obj-481",
+     "id": "obj-489",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10167,7 +10336,7 @@
    },
    {
     "box": {
-     "id": "obj-482",
+     "id": "obj-490",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10205,7 +10374,7 @@
    },
    {
     "box": {
-     "id": "obj-483",
+     "id": "obj-491",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10229,13 +10398,13 @@
    },
    {
     "box": {
-     "id": "obj-484",
+     "id": "obj-492",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5136,
+      5196,
       77,
       22
      ],
@@ -10247,13 +10416,13 @@
    },
    {
     "box": {
-     "id": "obj-485",
+     "id": "obj-493",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5136,
+      5196,
       175,
       22
      ],
@@ -10266,13 +10435,13 @@
    },
    {
     "box": {
-     "id": "obj-486",
+     "id": "obj-494",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      5136,
+      5196,
       91,
       22
      ],
@@ -10284,13 +10453,13 @@
    },
    {
     "box": {
-     "id": "obj-487",
+     "id": "obj-495",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5166,
+      5226,
       112,
       22
      ],
@@ -10302,13 +10471,13 @@
    },
    {
     "box": {
-     "id": "obj-488",
+     "id": "obj-496",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5166,
+      5226,
       189,
       22
      ],
@@ -10320,13 +10489,13 @@
    },
    {
     "box": {
-     "id": "obj-489",
+     "id": "obj-497",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      5166,
+      5226,
       98,
       22
      ],
@@ -10336,7 +10505,7 @@
    },
    {
     "box": {
-     "id": "obj-490",
+     "id": "obj-498",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10374,7 +10543,7 @@
    },
    {
     "box": {
-     "id": "obj-491",
+     "id": "obj-499",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10398,13 +10567,13 @@
    },
    {
     "box": {
-     "id": "obj-492",
+     "id": "obj-500",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5196,
+      5256,
       77,
       22
      ],
@@ -10416,13 +10585,13 @@
    },
    {
     "box": {
-     "id": "obj-493",
+     "id": "obj-501",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5196,
+      5256,
       196,
       22
      ],
@@ -10435,13 +10604,13 @@
    },
    {
     "box": {
-     "id": "obj-494",
+     "id": "obj-502",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       337.0,
-      5196,
+      5256,
       91,
       22
      ],
@@ -10453,13 +10622,13 @@
    },
    {
     "box": {
-     "id": "obj-495",
+     "id": "obj-503",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5226,
+      5286,
       126,
       22
      ],
@@ -10471,13 +10640,13 @@
    },
    {
     "box": {
-     "id": "obj-496",
+     "id": "obj-504",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      5226,
+      5286,
       210,
       22
      ],
@@ -10489,13 +10658,13 @@
    },
    {
     "box": {
-     "id": "obj-497",
+     "id": "obj-505",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       400.0,
-      5226,
+      5286,
       98,
       22
      ],
@@ -10505,7 +10674,7 @@
    },
    {
     "box": {
-     "id": "obj-498",
+     "id": "obj-506",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10528,7 +10697,7 @@
    },
    {
     "box": {
-     "id": "obj-499",
+     "id": "obj-507",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10566,7 +10735,7 @@
    },
    {
     "box": {
-     "id": "obj-500",
+     "id": "obj-508",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10590,13 +10759,13 @@
    },
    {
     "box": {
-     "id": "obj-501",
+     "id": "obj-509",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5256,
+      5316,
       77,
       22
      ],
@@ -10608,13 +10777,13 @@
    },
    {
     "box": {
-     "id": "obj-502",
+     "id": "obj-510",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5256,
+      5316,
       231,
       22
      ],
@@ -10627,13 +10796,13 @@
    },
    {
     "box": {
-     "id": "obj-503",
+     "id": "obj-511",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       372.0,
-      5256,
+      5316,
       91,
       22
      ],
@@ -10645,13 +10814,13 @@
    },
    {
     "box": {
-     "id": "obj-504",
+     "id": "obj-512",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5286,
+      5346,
       112,
       22
      ],
@@ -10663,13 +10832,13 @@
    },
    {
     "box": {
-     "id": "obj-505",
+     "id": "obj-513",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5286,
+      5346,
       245,
       22
      ],
@@ -10681,13 +10850,13 @@
    },
    {
     "box": {
-     "id": "obj-506",
+     "id": "obj-514",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      5286,
+      5346,
       98,
       22
      ],
@@ -10697,7 +10866,7 @@
    },
    {
     "box": {
-     "id": "obj-507",
+     "id": "obj-515",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10735,7 +10904,7 @@
    },
    {
     "box": {
-     "id": "obj-508",
+     "id": "obj-516",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10759,13 +10928,13 @@
    },
    {
     "box": {
-     "id": "obj-509",
+     "id": "obj-517",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5316,
+      5376,
       77,
       22
      ],
@@ -10777,13 +10946,13 @@
    },
    {
     "box": {
-     "id": "obj-510",
+     "id": "obj-518",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5316,
+      5376,
       217,
       22
      ],
@@ -10796,13 +10965,13 @@
    },
    {
     "box": {
-     "id": "obj-511",
+     "id": "obj-519",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      5316,
+      5376,
       91,
       22
      ],
@@ -10814,13 +10983,13 @@
    },
    {
     "box": {
-     "id": "obj-512",
+     "id": "obj-520",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5346,
+      5406,
       112,
       22
      ],
@@ -10832,13 +11001,13 @@
    },
    {
     "box": {
-     "id": "obj-513",
+     "id": "obj-521",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5346,
+      5406,
       231,
       22
      ],
@@ -10850,13 +11019,13 @@
    },
    {
     "box": {
-     "id": "obj-514",
+     "id": "obj-522",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      5346,
+      5406,
       98,
       22
      ],
@@ -10866,7 +11035,7 @@
    },
    {
     "box": {
-     "id": "obj-515",
+     "id": "obj-523",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -10904,7 +11073,7 @@
    },
    {
     "box": {
-     "id": "obj-516",
+     "id": "obj-524",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -10928,13 +11097,13 @@
    },
    {
     "box": {
-     "id": "obj-517",
+     "id": "obj-525",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5376,
+      5436,
       77,
       22
      ],
@@ -10946,13 +11115,13 @@
    },
    {
     "box": {
-     "id": "obj-518",
+     "id": "obj-526",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5376,
+      5436,
       231,
       22
      ],
@@ -10965,13 +11134,13 @@
    },
    {
     "box": {
-     "id": "obj-519",
+     "id": "obj-527",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       372.0,
-      5376,
+      5436,
       91,
       22
      ],
@@ -10983,13 +11152,13 @@
    },
    {
     "box": {
-     "id": "obj-520",
+     "id": "obj-528",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5406,
+      5466,
       112,
       22
      ],
@@ -11001,13 +11170,13 @@
    },
    {
     "box": {
-     "id": "obj-521",
+     "id": "obj-529",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5406,
+      5466,
       245,
       22
      ],
@@ -11019,13 +11188,13 @@
    },
    {
     "box": {
-     "id": "obj-522",
+     "id": "obj-530",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       421.0,
-      5406,
+      5466,
       98,
       22
      ],
@@ -11035,7 +11204,7 @@
    },
    {
     "box": {
-     "id": "obj-523",
+     "id": "obj-531",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11073,7 +11242,7 @@
    },
    {
     "box": {
-     "id": "obj-524",
+     "id": "obj-532",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11097,13 +11266,13 @@
    },
    {
     "box": {
-     "id": "obj-525",
+     "id": "obj-533",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5436,
+      5496,
       77,
       22
      ],
@@ -11115,13 +11284,13 @@
    },
    {
     "box": {
-     "id": "obj-526",
+     "id": "obj-534",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5436,
+      5496,
       217,
       22
      ],
@@ -11134,13 +11303,13 @@
    },
    {
     "box": {
-     "id": "obj-527",
+     "id": "obj-535",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       358.0,
-      5436,
+      5496,
       91,
       22
      ],
@@ -11152,13 +11321,13 @@
    },
    {
     "box": {
-     "id": "obj-528",
+     "id": "obj-536",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5466,
+      5526,
       112,
       22
      ],
@@ -11170,13 +11339,13 @@
    },
    {
     "box": {
-     "id": "obj-529",
+     "id": "obj-537",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5466,
+      5526,
       231,
       22
      ],
@@ -11188,13 +11357,13 @@
    },
    {
     "box": {
-     "id": "obj-530",
+     "id": "obj-538",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       407.0,
-      5466,
+      5526,
       98,
       22
      ],
@@ -11204,7 +11373,7 @@
    },
    {
     "box": {
-     "id": "obj-531",
+     "id": "obj-539",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11227,7 +11396,7 @@
    },
    {
     "box": {
-     "id": "obj-532",
+     "id": "obj-540",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11265,7 +11434,7 @@
    },
    {
     "box": {
-     "id": "obj-533",
+     "id": "obj-541",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11289,13 +11458,13 @@
    },
    {
     "box": {
-     "id": "obj-534",
+     "id": "obj-542",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5496,
+      5556,
       77,
       22
      ],
@@ -11307,13 +11476,13 @@
    },
    {
     "box": {
-     "id": "obj-535",
+     "id": "obj-543",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5496,
+      5556,
       175,
       22
      ],
@@ -11326,13 +11495,13 @@
    },
    {
     "box": {
-     "id": "obj-536",
+     "id": "obj-544",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      5496,
+      5556,
       91,
       22
      ],
@@ -11344,13 +11513,13 @@
    },
    {
     "box": {
-     "id": "obj-537",
+     "id": "obj-545",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5526,
+      5586,
       112,
       22
      ],
@@ -11362,13 +11531,13 @@
    },
    {
     "box": {
-     "id": "obj-538",
+     "id": "obj-546",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5526,
+      5586,
       189,
       22
      ],
@@ -11380,13 +11549,13 @@
    },
    {
     "box": {
-     "id": "obj-539",
+     "id": "obj-547",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      5526,
+      5586,
       98,
       22
      ],
@@ -11396,7 +11565,7 @@
    },
    {
     "box": {
-     "id": "obj-540",
+     "id": "obj-548",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11434,7 +11603,7 @@
    },
    {
     "box": {
-     "id": "obj-541",
+     "id": "obj-549",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11458,13 +11627,13 @@
    },
    {
     "box": {
-     "id": "obj-542",
+     "id": "obj-550",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5556,
+      5616,
       77,
       22
      ],
@@ -11476,13 +11645,13 @@
    },
    {
     "box": {
-     "id": "obj-543",
+     "id": "obj-551",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5556,
+      5616,
       182,
       22
      ],
@@ -11495,13 +11664,13 @@
    },
    {
     "box": {
-     "id": "obj-544",
+     "id": "obj-552",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      5556,
+      5616,
       91,
       22
      ],
@@ -11513,13 +11682,13 @@
    },
    {
     "box": {
-     "id": "obj-545",
+     "id": "obj-553",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5586,
+      5646,
       112,
       22
      ],
@@ -11531,13 +11700,13 @@
    },
    {
     "box": {
-     "id": "obj-546",
+     "id": "obj-554",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5586,
+      5646,
       196,
       22
      ],
@@ -11549,13 +11718,13 @@
    },
    {
     "box": {
-     "id": "obj-547",
+     "id": "obj-555",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      5586,
+      5646,
       98,
       22
      ],
@@ -11565,7 +11734,7 @@
    },
    {
     "box": {
-     "id": "obj-548",
+     "id": "obj-556",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11603,7 +11772,7 @@
    },
    {
     "box": {
-     "id": "obj-549",
+     "id": "obj-557",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11617,175 +11786,6 @@
      "presentation": 1,
      "presentation_rect": [
       688,
-      1088,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-550",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5616,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-551",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5616,
-      196,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/output/balance"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-552",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      337.0,
-      5616,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-553",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5646,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-554",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5646,
-      210,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/output/balance"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-555",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      386.0,
-      5646,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-556",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      800,
-      1038,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      800,
-      1038,
-      104,
-      48
-     ],
-     "varname": "/output/limiter",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/output/limiter",
-       "parameter_shortname": "limiter",
-       "parameter_mmin": -24.0,
-       "parameter_mmax": 0.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f dB"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-557",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      800,
-      1088,
-      104,
-      22
-     ],
-     "text": "-24 to 0 dB",
-     "presentation": 1,
-     "presentation_rect": [
-      800,
       1088,
       104,
       22
@@ -11828,7 +11828,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/output/limiter"
+     "text": "route /yehu/output/balance"
     }
    },
    {
@@ -11858,13 +11858,13 @@
      "patching_rect": [
       16.0,
       5706,
-      119,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set -3"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -11874,7 +11874,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      159.0,
+      152.0,
       5706,
       210,
       22
@@ -11882,7 +11882,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/output/limiter"
+     "text": "prepend /yehu/output/balance"
     }
    },
    {
@@ -11892,7 +11892,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      386.0,
       5706,
       98,
       22
@@ -11904,6 +11904,175 @@
    {
     "box": {
      "id": "obj-564",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      800,
+      1038,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      1038,
+      104,
+      48
+     ],
+     "varname": "/output/limiter",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/output/limiter",
+       "parameter_shortname": "limiter",
+       "parameter_mmin": -24.0,
+       "parameter_mmax": 0.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f dB"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-565",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      800,
+      1088,
+      104,
+      22
+     ],
+     "text": "-24 to 0 dB",
+     "presentation": 1,
+     "presentation_rect": [
+      800,
+      1088,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-566",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5736,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-567",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5736,
+      196,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/output/limiter"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-568",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      337.0,
+      5736,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-569",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5766,
+      119,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set -3"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-570",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      159.0,
+      5766,
+      210,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/output/limiter"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-571",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      5766,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-572",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11926,7 +12095,7 @@
    },
    {
     "box": {
-     "id": "obj-565",
+     "id": "obj-573",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -11964,7 +12133,7 @@
    },
    {
     "box": {
-     "id": "obj-566",
+     "id": "obj-574",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -11978,175 +12147,6 @@
      "presentation": 1,
      "presentation_rect": [
       16,
-      1186,
-      104,
-      22
-     ],
-     "textjustification": 1,
-     "fontsize": 9.0
-    }
-   },
-   {
-    "box": {
-     "id": "obj-567",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5736,
-      77,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "r yehu.in"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-568",
-     "maxclass": "newobj",
-     "numinlets": 2,
-     "numoutlets": 2,
-     "patching_rect": [
-      117.0,
-      5736,
-      161,
-      22
-     ],
-     "outlettype": [
-      "",
-      ""
-     ],
-     "text": "route /yehu/body/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-569",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      302.0,
-      5736,
-      91,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend set"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-570",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      16.0,
-      5766,
-      112,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "loadmess set 0"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-571",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 1,
-     "patching_rect": [
-      152.0,
-      5766,
-      175,
-      22
-     ],
-     "outlettype": [
-      ""
-     ],
-     "text": "prepend /yehu/body/gain"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-572",
-     "maxclass": "newobj",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      351.0,
-      5766,
-      98,
-      22
-     ],
-     "outlettype": [],
-     "text": "s yehu.moved"
-    }
-   },
-   {
-    "box": {
-     "id": "obj-573",
-     "maxclass": "live.dial",
-     "numinlets": 1,
-     "numoutlets": 2,
-     "patching_rect": [
-      128,
-      1136,
-      104,
-      48
-     ],
-     "outlettype": [
-      "int/float",
-      "int/float"
-     ],
-     "presentation": 1,
-     "presentation_rect": [
-      128,
-      1136,
-      104,
-      48
-     ],
-     "varname": "/body/blend",
-     "parameter_enable": 1,
-     "saved_attribute_attributes": {
-      "valueof": {
-       "parameter_longname": "/body/blend",
-       "parameter_shortname": "blend",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
-       "parameter_type": 0,
-       "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
-      }
-     }
-    }
-   },
-   {
-    "box": {
-     "id": "obj-574",
-     "maxclass": "comment",
-     "numinlets": 1,
-     "numoutlets": 0,
-     "patching_rect": [
-      128,
-      1186,
-      104,
-      22
-     ],
-     "text": "0 to 1",
-     "presentation": 1,
-     "presentation_rect": [
-      128,
       1186,
       104,
       22
@@ -12182,14 +12182,14 @@
      "patching_rect": [
       117.0,
       5796,
-      168,
+      161,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/blend"
+     "text": "route /yehu/body/gain"
     }
    },
    {
@@ -12199,7 +12199,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      309.0,
+      302.0,
       5796,
       91,
       22
@@ -12237,13 +12237,13 @@
      "patching_rect": [
       152.0,
       5826,
-      182,
+      175,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/blend"
+     "text": "prepend /yehu/body/gain"
     }
    },
    {
@@ -12253,7 +12253,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      358.0,
+      351.0,
       5826,
       98,
       22
@@ -12269,7 +12269,7 @@
      "numinlets": 1,
      "numoutlets": 2,
      "patching_rect": [
-      240,
+      128,
       1136,
       104,
       48
@@ -12280,17 +12280,17 @@
      ],
      "presentation": 1,
      "presentation_rect": [
-      240,
+      128,
       1136,
       104,
       48
      ],
-     "varname": "/body/width",
+     "varname": "/body/blend",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/body/width",
-       "parameter_shortname": "width",
+       "parameter_longname": "/body/blend",
+       "parameter_shortname": "blend",
        "parameter_mmin": 0.0,
        "parameter_mmax": 1.0,
        "parameter_type": 0,
@@ -12307,7 +12307,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      240,
+      128,
       1186,
       104,
       22
@@ -12315,7 +12315,7 @@
      "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
-      240,
+      128,
       1186,
       104,
       22
@@ -12358,7 +12358,7 @@
       "",
       ""
      ],
-     "text": "route /yehu/body/width"
+     "text": "route /yehu/body/blend"
     }
    },
    {
@@ -12388,13 +12388,13 @@
      "patching_rect": [
       16.0,
       5886,
-      126,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.3"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -12404,7 +12404,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      152.0,
       5886,
       182,
       22
@@ -12412,7 +12412,7 @@
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/width"
+     "text": "prepend /yehu/body/blend"
     }
    },
    {
@@ -12422,7 +12422,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      372.0,
+      358.0,
       5886,
       98,
       22
@@ -12434,6 +12434,175 @@
    {
     "box": {
      "id": "obj-589",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      240,
+      1136,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1136,
+      104,
+      48
+     ],
+     "varname": "/body/width",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/width",
+       "parameter_shortname": "width",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-590",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      240,
+      1186,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      240,
+      1186,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-591",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5916,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-592",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      5916,
+      168,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-593",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      309.0,
+      5916,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-594",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      5946,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.3"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-595",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      5946,
+      182,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/width"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-596",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      372.0,
+      5946,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-597",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12471,7 +12640,7 @@
    },
    {
     "box": {
-     "id": "obj-590",
+     "id": "obj-598",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12495,13 +12664,13 @@
    },
    {
     "box": {
-     "id": "obj-591",
+     "id": "obj-599",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5916,
+      5976,
       77,
       22
      ],
@@ -12513,13 +12682,13 @@
    },
    {
     "box": {
-     "id": "obj-592",
+     "id": "obj-600",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5916,
+      5976,
       203,
       22
      ],
@@ -12532,13 +12701,13 @@
    },
    {
     "box": {
-     "id": "obj-593",
+     "id": "obj-601",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       344.0,
-      5916,
+      5976,
       91,
       22
      ],
@@ -12550,13 +12719,13 @@
    },
    {
     "box": {
-     "id": "obj-594",
+     "id": "obj-602",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5946,
+      6006,
       112,
       22
      ],
@@ -12568,13 +12737,13 @@
    },
    {
     "box": {
-     "id": "obj-595",
+     "id": "obj-603",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      5946,
+      6006,
       217,
       22
      ],
@@ -12586,13 +12755,13 @@
    },
    {
     "box": {
-     "id": "obj-596",
+     "id": "obj-604",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      5946,
+      6006,
       98,
       22
      ],
@@ -12602,7 +12771,7 @@
    },
    {
     "box": {
-     "id": "obj-597",
+     "id": "obj-605",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12640,7 +12809,7 @@
    },
    {
     "box": {
-     "id": "obj-598",
+     "id": "obj-606",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12664,13 +12833,13 @@
    },
    {
     "box": {
-     "id": "obj-599",
+     "id": "obj-607",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      5976,
+      6036,
       77,
       22
      ],
@@ -12682,13 +12851,13 @@
    },
    {
     "box": {
-     "id": "obj-600",
+     "id": "obj-608",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      5976,
+      6036,
       273,
       22
      ],
@@ -12701,13 +12870,13 @@
    },
    {
     "box": {
-     "id": "obj-601",
+     "id": "obj-609",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       414.0,
-      5976,
+      6036,
       91,
       22
      ],
@@ -12719,13 +12888,13 @@
    },
    {
     "box": {
-     "id": "obj-602",
+     "id": "obj-610",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6006,
+      6066,
       133,
       22
      ],
@@ -12737,13 +12906,13 @@
    },
    {
     "box": {
-     "id": "obj-603",
+     "id": "obj-611",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      6006,
+      6066,
       287,
       22
      ],
@@ -12755,13 +12924,13 @@
    },
    {
     "box": {
-     "id": "obj-604",
+     "id": "obj-612",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       484.0,
-      6006,
+      6066,
       98,
       22
      ],
@@ -12771,7 +12940,7 @@
    },
    {
     "box": {
-     "id": "obj-605",
+     "id": "obj-613",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -12809,7 +12978,7 @@
    },
    {
     "box": {
-     "id": "obj-606",
+     "id": "obj-614",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12833,13 +13002,13 @@
    },
    {
     "box": {
-     "id": "obj-607",
+     "id": "obj-615",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6036,
+      6096,
       77,
       22
      ],
@@ -12851,13 +13020,13 @@
    },
    {
     "box": {
-     "id": "obj-608",
+     "id": "obj-616",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6036,
+      6096,
       189,
       22
      ],
@@ -12870,13 +13039,13 @@
    },
    {
     "box": {
-     "id": "obj-609",
+     "id": "obj-617",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      6036,
+      6096,
       91,
       22
      ],
@@ -12888,13 +13057,13 @@
    },
    {
     "box": {
-     "id": "obj-610",
+     "id": "obj-618",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6066,
+      6126,
       126,
       22
      ],
@@ -12906,13 +13075,13 @@
    },
    {
     "box": {
-     "id": "obj-611",
+     "id": "obj-619",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      6066,
+      6126,
       203,
       22
      ],
@@ -12924,13 +13093,13 @@
    },
    {
     "box": {
-     "id": "obj-612",
+     "id": "obj-620",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      6066,
+      6126,
       98,
       22
      ],
@@ -12940,7 +13109,7 @@
    },
    {
     "box": {
-     "id": "obj-613",
+     "id": "obj-621",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -12963,7 +13132,7 @@
    },
    {
     "box": {
-     "id": "obj-614",
+     "id": "obj-622",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13001,7 +13170,7 @@
    },
    {
     "box": {
-     "id": "obj-615",
+     "id": "obj-623",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13025,13 +13194,13 @@
    },
    {
     "box": {
-     "id": "obj-616",
+     "id": "obj-624",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6096,
+      6156,
       77,
       22
      ],
@@ -13043,13 +13212,13 @@
    },
    {
     "box": {
-     "id": "obj-617",
+     "id": "obj-625",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6096,
+      6156,
       161,
       22
      ],
@@ -13062,13 +13231,13 @@
    },
    {
     "box": {
-     "id": "obj-618",
+     "id": "obj-626",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      6096,
+      6156,
       91,
       22
      ],
@@ -13080,13 +13249,13 @@
    },
    {
     "box": {
-     "id": "obj-619",
+     "id": "obj-627",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6126,
+      6186,
       112,
       22
      ],
@@ -13098,13 +13267,13 @@
    },
    {
     "box": {
-     "id": "obj-620",
+     "id": "obj-628",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6126,
+      6186,
       175,
       22
      ],
@@ -13116,13 +13285,13 @@
    },
    {
     "box": {
-     "id": "obj-621",
+     "id": "obj-629",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      6126,
+      6186,
       98,
       22
      ],
@@ -13132,7 +13301,7 @@
    },
    {
     "box": {
-     "id": "obj-622",
+     "id": "obj-630",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13170,7 +13339,7 @@
    },
    {
     "box": {
-     "id": "obj-623",
+     "id": "obj-631",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13194,13 +13363,13 @@
    },
    {
     "box": {
-     "id": "obj-624",
+     "id": "obj-632",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6156,
+      6216,
       77,
       22
      ],
@@ -13212,13 +13381,13 @@
    },
    {
     "box": {
-     "id": "obj-625",
+     "id": "obj-633",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6156,
+      6216,
       168,
       22
      ],
@@ -13231,13 +13400,13 @@
    },
    {
     "box": {
-     "id": "obj-626",
+     "id": "obj-634",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      6156,
+      6216,
       91,
       22
      ],
@@ -13249,13 +13418,13 @@
    },
    {
     "box": {
-     "id": "obj-627",
+     "id": "obj-635",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6186,
+      6246,
       126,
       22
      ],
@@ -13267,13 +13436,13 @@
    },
    {
     "box": {
-     "id": "obj-628",
+     "id": "obj-636",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      6186,
+      6246,
       182,
       22
      ],
@@ -13285,13 +13454,13 @@
    },
    {
     "box": {
-     "id": "obj-629",
+     "id": "obj-637",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      6186,
+      6246,
       98,
       22
      ],
@@ -13301,7 +13470,7 @@
    },
    {
     "box": {
-     "id": "obj-630",
+     "id": "obj-638",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13339,7 +13508,7 @@
    },
    {
     "box": {
-     "id": "obj-631",
+     "id": "obj-639",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13363,13 +13532,13 @@
    },
    {
     "box": {
-     "id": "obj-632",
+     "id": "obj-640",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6216,
+      6276,
       77,
       22
      ],
@@ -13381,13 +13550,13 @@
    },
    {
     "box": {
-     "id": "obj-633",
+     "id": "obj-641",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6216,
+      6276,
       182,
       22
      ],
@@ -13400,13 +13569,13 @@
    },
    {
     "box": {
-     "id": "obj-634",
+     "id": "obj-642",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      6216,
+      6276,
       91,
       22
      ],
@@ -13418,13 +13587,13 @@
    },
    {
     "box": {
-     "id": "obj-635",
+     "id": "obj-643",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6246,
+      6306,
       126,
       22
      ],
@@ -13436,13 +13605,13 @@
    },
    {
     "box": {
-     "id": "obj-636",
+     "id": "obj-644",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      6246,
+      6306,
       196,
       22
      ],
@@ -13454,13 +13623,13 @@
    },
    {
     "box": {
-     "id": "obj-637",
+     "id": "obj-645",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      6246,
+      6306,
       98,
       22
      ],
@@ -13470,7 +13639,7 @@
    },
    {
     "box": {
-     "id": "obj-638",
+     "id": "obj-646",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13508,7 +13677,7 @@
    },
    {
     "box": {
-     "id": "obj-639",
+     "id": "obj-647",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13532,13 +13701,13 @@
    },
    {
     "box": {
-     "id": "obj-640",
+     "id": "obj-648",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6276,
+      6336,
       77,
       22
      ],
@@ -13550,13 +13719,13 @@
    },
    {
     "box": {
-     "id": "obj-641",
+     "id": "obj-649",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6276,
+      6336,
       168,
       22
      ],
@@ -13569,13 +13738,13 @@
    },
    {
     "box": {
-     "id": "obj-642",
+     "id": "obj-650",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      6276,
+      6336,
       91,
       22
      ],
@@ -13587,13 +13756,13 @@
    },
    {
     "box": {
-     "id": "obj-643",
+     "id": "obj-651",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6306,
+      6366,
       133,
       22
      ],
@@ -13605,13 +13774,13 @@
    },
    {
     "box": {
-     "id": "obj-644",
+     "id": "obj-652",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      6306,
+      6366,
       182,
       22
      ],
@@ -13623,13 +13792,13 @@
    },
    {
     "box": {
-     "id": "obj-645",
+     "id": "obj-653",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      6306,
+      6366,
       98,
       22
      ],
@@ -13639,7 +13808,7 @@
    },
    {
     "box": {
-     "id": "obj-646",
+     "id": "obj-654",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13677,7 +13846,7 @@
    },
    {
     "box": {
-     "id": "obj-647",
+     "id": "obj-655",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13701,13 +13870,13 @@
    },
    {
     "box": {
-     "id": "obj-648",
+     "id": "obj-656",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6336,
+      6396,
       77,
       22
      ],
@@ -13719,13 +13888,13 @@
    },
    {
     "box": {
-     "id": "obj-649",
+     "id": "obj-657",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6336,
+      6396,
       189,
       22
      ],
@@ -13738,13 +13907,13 @@
    },
    {
     "box": {
-     "id": "obj-650",
+     "id": "obj-658",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      6336,
+      6396,
       91,
       22
      ],
@@ -13756,13 +13925,13 @@
    },
    {
     "box": {
-     "id": "obj-651",
+     "id": "obj-659",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6366,
+      6426,
       126,
       22
      ],
@@ -13774,13 +13943,13 @@
    },
    {
     "box": {
-     "id": "obj-652",
+     "id": "obj-660",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      6366,
+      6426,
       203,
       22
      ],
@@ -13792,13 +13961,13 @@
    },
    {
     "box": {
-     "id": "obj-653",
+     "id": "obj-661",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      6366,
+      6426,
       98,
       22
      ],
@@ -13808,7 +13977,7 @@
    },
    {
     "box": {
-     "id": "obj-654",
+     "id": "obj-662",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13846,7 +14015,7 @@
    },
    {
     "box": {
-     "id": "obj-655",
+     "id": "obj-663",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13870,13 +14039,13 @@
    },
    {
     "box": {
-     "id": "obj-656",
+     "id": "obj-664",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6396,
+      6456,
       77,
       22
      ],
@@ -13888,13 +14057,13 @@
    },
    {
     "box": {
-     "id": "obj-657",
+     "id": "obj-665",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6396,
+      6456,
       154,
       22
      ],
@@ -13907,13 +14076,13 @@
    },
    {
     "box": {
-     "id": "obj-658",
+     "id": "obj-666",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       295.0,
-      6396,
+      6456,
       91,
       22
      ],
@@ -13925,13 +14094,13 @@
    },
    {
     "box": {
-     "id": "obj-659",
+     "id": "obj-667",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6426,
+      6486,
       112,
       22
      ],
@@ -13943,13 +14112,13 @@
    },
    {
     "box": {
-     "id": "obj-660",
+     "id": "obj-668",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6426,
+      6486,
       168,
       22
      ],
@@ -13961,13 +14130,13 @@
    },
    {
     "box": {
-     "id": "obj-661",
+     "id": "obj-669",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       344.0,
-      6426,
+      6486,
       98,
       22
      ],
@@ -13977,7 +14146,7 @@
    },
    {
     "box": {
-     "id": "obj-662",
+     "id": "obj-670",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -14000,7 +14169,7 @@
    },
    {
     "box": {
-     "id": "obj-663",
+     "id": "obj-671",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -14038,7 +14207,7 @@
    },
    {
     "box": {
-     "id": "obj-664",
+     "id": "obj-672",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -14062,13 +14231,13 @@
    },
    {
     "box": {
-     "id": "obj-665",
+     "id": "obj-673",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6456,
+      6516,
       77,
       22
      ],
@@ -14080,13 +14249,13 @@
    },
    {
     "box": {
-     "id": "obj-666",
+     "id": "obj-674",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6456,
+      6516,
       224,
       22
      ],
@@ -14099,13 +14268,13 @@
    },
    {
     "box": {
-     "id": "obj-667",
+     "id": "obj-675",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       365.0,
-      6456,
+      6516,
       91,
       22
      ],
@@ -14117,13 +14286,13 @@
    },
    {
     "box": {
-     "id": "obj-668",
+     "id": "obj-676",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6486,
+      6546,
       112,
       22
      ],
@@ -14135,13 +14304,13 @@
    },
    {
     "box": {
-     "id": "obj-669",
+     "id": "obj-677",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6486,
+      6546,
       238,
       22
      ],
@@ -14153,13 +14322,13 @@
    },
    {
     "box": {
-     "id": "obj-670",
+     "id": "obj-678",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      6486,
+      6546,
       98,
       22
      ],
@@ -14169,7 +14338,7 @@
    },
    {
     "box": {
-     "id": "obj-671",
+     "id": "obj-679",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -14207,7 +14376,7 @@
    },
    {
     "box": {
-     "id": "obj-672",
+     "id": "obj-680",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -14231,13 +14400,13 @@
    },
    {
     "box": {
-     "id": "obj-673",
+     "id": "obj-681",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6516,
+      6576,
       77,
       22
      ],
@@ -14249,13 +14418,13 @@
    },
    {
     "box": {
-     "id": "obj-674",
+     "id": "obj-682",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6516,
+      6576,
       175,
       22
      ],
@@ -14268,13 +14437,13 @@
    },
    {
     "box": {
-     "id": "obj-675",
+     "id": "obj-683",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      6516,
+      6576,
       91,
       22
      ],
@@ -14286,13 +14455,13 @@
    },
    {
     "box": {
-     "id": "obj-676",
+     "id": "obj-684",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6546,
+      6606,
       112,
       22
      ],
@@ -14304,13 +14473,13 @@
    },
    {
     "box": {
-     "id": "obj-677",
+     "id": "obj-685",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6546,
+      6606,
       189,
       22
      ],
@@ -14322,13 +14491,13 @@
    },
    {
     "box": {
-     "id": "obj-678",
+     "id": "obj-686",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      6546,
+      6606,
       98,
       22
      ],
@@ -17396,6 +17565,19 @@
    {
     "patchline": {
      "source": [
+      "obj-304",
+      0
+     ],
+     "destination": [
+      "obj-305",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-305",
       0
      ],
@@ -17413,7 +17595,7 @@
       0
      ],
      "destination": [
-      "obj-307",
+      "obj-302",
       0
      ],
      "order": 0
@@ -17426,7 +17608,20 @@
       0
      ],
      "destination": [
-      "obj-303",
+      "obj-302",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-302",
+      0
+     ],
+     "destination": [
+      "obj-308",
       0
      ],
      "order": 0
@@ -17439,33 +17634,7 @@
       0
      ],
      "destination": [
-      "obj-303",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-303",
-      0
-     ],
-     "destination": [
       "obj-309",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-309",
-      0
-     ],
-     "destination": [
-      "obj-310",
       0
      ],
      "order": 0
@@ -18098,6 +18267,19 @@
    {
     "patchline": {
      "source": [
+      "obj-377",
+      0
+     ],
+     "destination": [
+      "obj-378",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-378",
       0
      ],
@@ -18115,7 +18297,7 @@
       0
      ],
      "destination": [
-      "obj-380",
+      "obj-375",
       0
      ],
      "order": 0
@@ -18128,7 +18310,20 @@
       0
      ],
      "destination": [
-      "obj-376",
+      "obj-375",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-375",
+      0
+     ],
+     "destination": [
+      "obj-381",
       0
      ],
      "order": 0
@@ -18141,33 +18336,7 @@
       0
      ],
      "destination": [
-      "obj-376",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-376",
-      0
-     ],
-     "destination": [
       "obj-382",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-382",
-      0
-     ],
-     "destination": [
-      "obj-383",
       0
      ],
      "order": 0
@@ -18722,6 +18891,19 @@
    {
     "patchline": {
      "source": [
+      "obj-442",
+      0
+     ],
+     "destination": [
+      "obj-443",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-443",
       0
      ],
@@ -18739,7 +18921,7 @@
       0
      ],
      "destination": [
-      "obj-445",
+      "obj-440",
       0
      ],
      "order": 0
@@ -18752,7 +18934,20 @@
       0
      ],
      "destination": [
-      "obj-441",
+      "obj-440",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-440",
+      0
+     ],
+     "destination": [
+      "obj-446",
       0
      ],
      "order": 0
@@ -18765,33 +18960,7 @@
       0
      ],
      "destination": [
-      "obj-441",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-441",
-      0
-     ],
-     "destination": [
       "obj-447",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-447",
-      0
-     ],
-     "destination": [
-      "obj-448",
       0
      ],
      "order": 0
@@ -19112,6 +19281,19 @@
    {
     "patchline": {
      "source": [
+      "obj-483",
+      0
+     ],
+     "destination": [
+      "obj-484",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-484",
       0
      ],
@@ -19129,7 +19311,7 @@
       0
      ],
      "destination": [
-      "obj-486",
+      "obj-481",
       0
      ],
      "order": 0
@@ -19142,7 +19324,20 @@
       0
      ],
      "destination": [
-      "obj-482",
+      "obj-481",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-481",
+      0
+     ],
+     "destination": [
+      "obj-487",
       0
      ],
      "order": 0
@@ -19155,33 +19350,7 @@
       0
      ],
      "destination": [
-      "obj-482",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-482",
-      0
-     ],
-     "destination": [
       "obj-488",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-488",
-      0
-     ],
-     "destination": [
-      "obj-489",
       0
      ],
      "order": 0
@@ -19268,6 +19437,19 @@
    {
     "patchline": {
      "source": [
+      "obj-500",
+      0
+     ],
+     "destination": [
+      "obj-501",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-501",
       0
      ],
@@ -19285,7 +19467,7 @@
       0
      ],
      "destination": [
-      "obj-503",
+      "obj-498",
       0
      ],
      "order": 0
@@ -19298,7 +19480,20 @@
       0
      ],
      "destination": [
-      "obj-499",
+      "obj-498",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-498",
+      0
+     ],
+     "destination": [
+      "obj-504",
       0
      ],
      "order": 0
@@ -19311,33 +19506,7 @@
       0
      ],
      "destination": [
-      "obj-499",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-499",
-      0
-     ],
-     "destination": [
       "obj-505",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-505",
-      0
-     ],
-     "destination": [
-      "obj-506",
       0
      ],
      "order": 0
@@ -19580,6 +19749,19 @@
    {
     "patchline": {
      "source": [
+      "obj-533",
+      0
+     ],
+     "destination": [
+      "obj-534",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-534",
       0
      ],
@@ -19597,7 +19779,7 @@
       0
      ],
      "destination": [
-      "obj-536",
+      "obj-531",
       0
      ],
      "order": 0
@@ -19610,7 +19792,20 @@
       0
      ],
      "destination": [
-      "obj-532",
+      "obj-531",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-531",
+      0
+     ],
+     "destination": [
+      "obj-537",
       0
      ],
      "order": 0
@@ -19623,33 +19818,7 @@
       0
      ],
      "destination": [
-      "obj-532",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-532",
-      0
-     ],
-     "destination": [
       "obj-538",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-538",
-      0
-     ],
-     "destination": [
-      "obj-539",
       0
      ],
      "order": 0
@@ -19892,6 +20061,19 @@
    {
     "patchline": {
      "source": [
+      "obj-566",
+      0
+     ],
+     "destination": [
+      "obj-567",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-567",
       0
      ],
@@ -19909,7 +20091,7 @@
       0
      ],
      "destination": [
-      "obj-569",
+      "obj-564",
       0
      ],
      "order": 0
@@ -19922,7 +20104,20 @@
       0
      ],
      "destination": [
-      "obj-565",
+      "obj-564",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-564",
+      0
+     ],
+     "destination": [
+      "obj-570",
       0
      ],
      "order": 0
@@ -19935,33 +20130,7 @@
       0
      ],
      "destination": [
-      "obj-565",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-565",
-      0
-     ],
-     "destination": [
       "obj-571",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-571",
-      0
-     ],
-     "destination": [
-      "obj-572",
       0
      ],
      "order": 0
@@ -20360,6 +20529,19 @@
    {
     "patchline": {
      "source": [
+      "obj-615",
+      0
+     ],
+     "destination": [
+      "obj-616",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-616",
       0
      ],
@@ -20377,7 +20559,7 @@
       0
      ],
      "destination": [
-      "obj-618",
+      "obj-613",
       0
      ],
      "order": 0
@@ -20390,7 +20572,20 @@
       0
      ],
      "destination": [
-      "obj-614",
+      "obj-613",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-613",
+      0
+     ],
+     "destination": [
+      "obj-619",
       0
      ],
      "order": 0
@@ -20403,33 +20598,7 @@
       0
      ],
      "destination": [
-      "obj-614",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-614",
-      0
-     ],
-     "destination": [
       "obj-620",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-620",
-      0
-     ],
-     "destination": [
-      "obj-621",
       0
      ],
      "order": 0
@@ -20828,6 +20997,19 @@
    {
     "patchline": {
      "source": [
+      "obj-664",
+      0
+     ],
+     "destination": [
+      "obj-665",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-665",
       0
      ],
@@ -20845,7 +21027,7 @@
       0
      ],
      "destination": [
-      "obj-667",
+      "obj-662",
       0
      ],
      "order": 0
@@ -20858,7 +21040,20 @@
       0
      ],
      "destination": [
-      "obj-663",
+      "obj-662",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-662",
+      0
+     ],
+     "destination": [
+      "obj-668",
       0
      ],
      "order": 0
@@ -20871,33 +21066,7 @@
       0
      ],
      "destination": [
-      "obj-663",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-663",
-      0
-     ],
-     "destination": [
       "obj-669",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-669",
-      0
-     ],
-     "destination": [
-      "obj-670",
       0
      ],
      "order": 0
@@ -20976,6 +21145,84 @@
      ],
      "destination": [
       "obj-678",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-681",
+      0
+     ],
+     "destination": [
+      "obj-682",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-682",
+      0
+     ],
+     "destination": [
+      "obj-683",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-683",
+      0
+     ],
+     "destination": [
+      "obj-679",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-684",
+      0
+     ],
+     "destination": [
+      "obj-679",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-679",
+      0
+     ],
+     "destination": [
+      "obj-685",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-685",
+      0
+     ],
+     "destination": [
+      "obj-686",
       0
      ],
      "order": 0

@@ -162,7 +162,7 @@ def test_a_mark_sets_its_parameter_for_its_note_alone(subtests):
         ("tremolo", "/playing/tremolo", QUICK_TREMOLO),
         (Mark("tremolo", 2), "/playing/tremolo", 8.0),
         (Mark("vibrato", 40.0), "/playing/vibrato", 40.0),
-        (Mark("vibrato", 0.0), "/playing/phrasing", 0.0),
+        (Mark("vibrato", 0.0), "/playing/left_hand", 0.0),
         ("spiccato", "/playing/articulation", float(NUMBER["spiccato"])),
         (Mark("articulation", 14), "/playing/articulation", 14.0),
         ("slide-in-up", "/playing/articulation", float(NUMBER["slide-up"])),

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import mido
 import numpy as np
 import pytest
 from shaping import phrased
 
-from yehu_server.scores.phrasing import MIN_FOR_BOWS
+from yehu_server.playing.options import PlayingOptions
+from yehu_server.rendering.options import Part
+from yehu_server.scores.phrasing import MIN_FOR_BOWS, is_fingered
+from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, notes_of, phrases_of
 
 BEAT_S = 0.5
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def bare(*notes, velocity=80, extra=(), metres=(COMMON_TIME,)) -> Score:
@@ -123,3 +129,33 @@ def test_the_bow_breathes_between_phrases_but_not_where_bows_are_marked():
     assert pedalled[6].end_s == 3.0
     slurred = [*phrases[0], (3.0, 3.02, 72), (6.0, 1.0, 67)]
     assert notes_of(phrased(bare(*slurred), 0.5))[6].end_s == pytest.approx(3.01)
+
+
+def test_bends_of_what_is_not_played_leave_the_left_hand_free():
+    """The example has bends in parts beside the one that is played, and that one has none."""
+    usual = PlayingOptions()
+    how = ReadOptions.by(usual, all_parts=False)
+    score = read_any(EXAMPLES / "mo_li_hua.mid", how)
+    bent = {event.message.channel for event in score.events if event.message.type == "pitchwheel"}
+    played = {note.channel for note in notes_of(score)}
+    assert bent
+    assert bent.isdisjoint(played)
+    assert not is_fingered(score, usual)
+    assert dict(Part.shaped([score], replace(usual, phrasing=0.5)).playing.start) == {}
+    [bones] = sorted(bent)[:1]
+    everything = read_any(EXAMPLES / "mo_li_hua.mid", ReadOptions.by(usual, all_parts=True))
+    assert is_fingered(everything, usual)
+    assert is_fingered(everything, replace(usual, channels=frozenset({bones})))
+    assert not is_fingered(everything, replace(usual, channels=frozenset(played)))
+
+
+def test_under_mpe_the_bends_of_the_whole_surface_count():
+    score = read_any(EXAMPLES / "mpe_phrase.mid")
+    assert is_fingered(score, PlayingOptions())
+
+
+def test_a_fingered_file_keeps_its_left_hand_and_has_a_bow_arm():
+    bend = mido.Message("pitchwheel", pitch=900)
+    part = Part.shaped([bare(*SCALE, extra=[(0.1, bend)])], PlayingOptions(phrasing=0.5))
+    assert part.playing.phrasing == 0.5
+    assert dict(part.playing.start)["/playing/left_hand"] == 0.0

@@ -141,7 +141,7 @@ def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) ->
     Else they must be named explicitly, so that the result of a rendering depends on its command
     alone. Raises YehuError where a file or value is wrong.
     """
-    from yehu_server.playing.options import PlayingOptions
+    from yehu_server.playing.options import LIVE, PlayingOptions
     from yehu_server.playing.preset_folders import Presets
     from yehu_server.playing.tuning import RangePolicy
 
@@ -157,8 +157,8 @@ def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) ->
     name = arguments.preset
     if name is None and is_live and arguments.mapping is None and not arguments.mpe:
         name = FIRST_LIVE
-    if name is None:
-        return playing
-    for remark in playing.presets.find(name).remarks():
-        warn(remark)
-    return playing.with_preset(name)
+    if name is not None:
+        for remark in playing.presets.find(name).remarks():
+            warn(remark)
+        playing = playing.with_preset(name)
+    return replace(playing, start=(*LIVE.items(), *playing.start)) if is_live else playing

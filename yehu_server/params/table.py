@@ -189,6 +189,9 @@ TABLE: tuple[Param, ...] = (
     Param("/playing/phrasing", "", "1", 0.0, 1.0, 0.0,
         "How much the player shapes plain notes by itself: vibrato that comes late on long notes, "
         "slides on leaps. Files get phrases, accents and slurs too (render --phrasing)."),
+    Param("/playing/left_hand", "", "1", 0.0, 1.0, 1.0,
+        "How far phrasing moves the left hand too: its own vibrato, slides and scoops; 0 leaves "
+        "these to bends and controllers."),
     Param("/playing/section", "", "1", 1.0, 16.0, 1.0,
         "Number of players of this part, each on an instrument of their own; at most as many as "
         "it began with.", is_choice=True),

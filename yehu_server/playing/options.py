@@ -30,8 +30,13 @@ from yehu_server.playing.tuning import EQUAL, RangePolicy, Tuning
 
 # Where a voice is followed. It varies by itself, so hands do not; as it sings, nobody can know its
 # attacks nor how hard they are, so the bow has quick ones of its own.
-STILL_HANDS = {"/playing/variation": 0.0, "/playing/vibrato": 0.0}
+STILL_HANDS = {"/playing/variation": 0.0, "/playing/vibrato": 0.0, "/playing/phrasing": 0.0}
 AS_IT_SINGS = {**STILL_HANDS, "/playing/attack": 20.0, "/playing/velocity": NEUTRAL_VELOCITY}
+
+
+# What a live instrument begins with: a bow arm that moves within each stroke, and a left hand that
+# does what it is told.
+LIVE = {"/playing/phrasing": 0.5, "/playing/left_hand": 0.0}
 
 
 @dataclass(frozen=True)

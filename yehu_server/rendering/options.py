@@ -29,8 +29,9 @@ class Part:
     def shaped(cls, scores: Sequence[Score], playing: PlayingOptions, name: str = "") -> Part:
         """The part of a player who plays scores one after another, and shapes them."""
         score = concatenate([phrased(each, playing) for each in scores])
-        if is_fingered(score):
-            playing = replace(playing, phrasing=0.0)
+        if is_fingered(score, playing):
+            still = ("/playing/left_hand", 0.0)
+            playing = replace(playing, start=(*playing.start, still))
         return cls(score, playing, name or score.name)
 
     def check_is_heard(self) -> None:

@@ -8,7 +8,6 @@ from functools import cache
 from typing import Any
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
-from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
 from yehu_server.scores.octaves import NoteSpan, octaves_of
@@ -54,15 +53,6 @@ def numbers_of(names: Sequence[str], asked: Sequence[str]) -> list[int]:
             )
         found.add(chosen[0])
     return sorted(found)
-
-
-def says_mpe(score: Score) -> bool:
-    """Whether a score of MIDI says that its channels are notes of one player (MPE, RPN 6)."""
-    return any(
-        event.message.type == "control_change"
-        and (event.message.control, event.message.value) == (RPN_FINE, MPE_CONFIGURATION)
-        for event in score.events
-    )
 
 
 def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:

@@ -13,10 +13,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
+from typing import Any
 
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.rubato import delayed
-from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of
+from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of, says_mpe
 from yehu_server.scores.slides import with_slides
 
 PHRASING = 0.5  # of files, where nothing else is asked for
@@ -75,7 +76,7 @@ def _phrased(score: Score, amount: float, playing: PlayingOptions) -> Score:
         if score.is_written or is_free:
             ends_s.update(breaths(phrases, amount))
     changed = _changed(score, velocities, ends_s)
-    if is_fingered(score):
+    if is_fingered(score, playing):
         return changed
     return with_slides(changed, amount, playing)
 
@@ -93,13 +94,26 @@ def is_bowed(notes: Sequence[ScoreNote], controllers: Iterable[int]) -> bool:
     return overlap or not PEDALS.isdisjoint(controllers)
 
 
-def is_fingered(score: Score) -> bool:
-    """Whether vibrato or slides are marked: by bends, aftertouch, or controllers of these."""
+def is_fingered(score: Score, playing: PlayingOptions) -> bool:
+    """Whether vibrato or slides are marked: by bends, aftertouch, or controllers of these.
+
+    Only on channels of notes that are played; under MPE one part has all channels.
+    """
+    channels = {note.channel for note in notes_of(score)}
+    if playing.mapping.mpe or says_mpe(score):
+        channels = set(range(16))
+    elif playing.channels is not None:
+        channels &= playing.channels
     return any(
-        event.message.type in LEFT_HAND_MESSAGES
-        or (event.message.type == "control_change" and event.message.control in LEFT_HAND)
+        getattr(event.message, "channel", None) in channels and _is_of_left_hand(event.message)
         for event in score.events
     )
+
+
+def _is_of_left_hand(message: Any) -> bool:
+    """Whether a message is one that moves the left hand."""
+    is_controller = message.type == "control_change" and message.control in LEFT_HAND
+    return message.type in LEFT_HAND_MESSAGES or is_controller
 
 
 def shaped(

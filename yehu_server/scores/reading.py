@@ -18,7 +18,14 @@ from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
 from yehu_server.scores.rubato import delays_of, midi_delays
-from yehu_server.scores.score import MAX_DURATION_H, Score, ScoreEvent, check_duration, errors_name
+from yehu_server.scores.score import (
+    MAX_DURATION_H,
+    Score,
+    ScoreEvent,
+    check_duration,
+    errors_name,
+    says_mpe,
+)
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.track import DamagedError
 from yehu_server.scores.written.in_range import default_parts, moved
@@ -205,7 +212,7 @@ def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
 
 
 def _midi_played(score: Score, options: ReadOptions) -> Score:
-    is_mpe = options.is_mpe or chosen_parts.says_mpe(score)
+    is_mpe = options.is_mpe or says_mpe(score)
     tune = score if is_mpe else chosen_parts.default_midi_part(score)
     delays = midi_delays(score, tune)
     if options.parts:

@@ -16,6 +16,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import mido
 
+from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.util.files import error_reason, read_bytes
 
@@ -250,6 +251,15 @@ def _paired(score: Score) -> Iterator[ScoreNote]:
         yield ScoreNote(
             number, end, message.channel, message.note, message.velocity, start_s, end_s, beat
         )
+
+
+def says_mpe(score: Score) -> bool:
+    """Whether a score of MIDI says that its channels are notes of one player (MPE, RPN 6)."""
+    return any(
+        event.message.type == "control_change"
+        and (event.message.control, event.message.value) == (RPN_FINE, MPE_CONFIGURATION)
+        for event in score.events
+    )
 
 
 def transposed(message: mido.Message, by: int) -> mido.Message:

@@ -1,8 +1,9 @@
-"""Add slides over leaps to scores: the finger leaves a note early, to arrive on the beat.
+"""Add slides to scores, over leaps and some steps: the finger leaves early, to arrive on the beat.
 
 In a score the next note is known. So the bow that plays the first note carries the slide, and the
 second note begins where it is written, on its pitch; live a slide can only follow the beat
-(``core.player.phrasing``, which has its size too). The slide is a bend of the first note.
+(``core.player.phrasing``). The slide is a bend of the first note. Which steps have one, and how
+long each lasts, the seed says.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from random import Random
 from typing import NamedTuple
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
@@ -25,8 +27,7 @@ from yehu_server.core.player.phrasing import (
     LONG_S,
     MAX_LEAP,
     MIN_LEAP,
-    MIN_SLIDE_MS,
-    SLIDE_MS,
+    USUAL_PHRASING,
 )
 from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
@@ -37,10 +38,17 @@ from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, Setting
 ARTICULATION, STRING = "/playing/articulation", "/playing/string"
 PHRASING, PIZZICATO, PORTAMENTO = "/playing/phrasing", "/playing/pizzicato", "/playing/portamento"
 INNER = 1.0
-SEEN = (ARTICULATION, BEND, PHRASING, PIZZICATO, PORTAMENTO, STRING)
+LEFT_HAND = "/playing/left_hand"
+SEEN = (ARTICULATION, BEND, LEFT_HAND, PHRASING, PIZZICATO, PORTAMENTO, STRING)
 STEP_S = 0.005  # between the points of a slide: the player's own interval
 BEND_S = 1e-3 * find(BEND).smooth_ms  # after which the finger is at a point
-GAP_S = 0.03  # between two notes that a slide may join
+GAP_S = 0.045  # between two notes that a slide may join
+# Time of a slide at USUAL_PHRASING and above, and the most of its note. In recordings of violins 6
+# to 25 % of the steps last longer than 60 ms. By ear.
+SHORTEST_S, LONGEST_S, MOST = 0.15, 0.3, 0.32
+MIN_STEP = 0.5  # semitones
+# The share of steps up that slide at USUAL_PHRASING, of narrow ones and of thirds; of steps down.
+NARROW, THIRD, THIRD_FROM, FALLING = 0.13, 0.26, 2.5, 0.6
 
 
 def logistic(part: float) -> float:
@@ -60,6 +68,7 @@ class Slide(NamedTuple):
     after: ScoreNote
     semitones: float
     string: float
+    lasts_s: float
 
 
 class _State(NamedTuple):
@@ -70,9 +79,8 @@ class _State(NamedTuple):
 
 
 def with_slides(score: Score, amount: float, playing: PlayingOptions) -> Score:
-    """Return a score with slides over its leaps, as far as phrasing (0 to 1) says."""
+    """Return a score with slides over leaps and some steps, as far as phrasing (0 to 1) says."""
     within = range_of(playing.quantities)
-    slide_s = 1e-3 * (MIN_SLIDE_MS + (SLIDE_MS - MIN_SLIDE_MS) * amount)
     slides = list(_slides(score, amount, playing, within))
     on_strings = {slide.note.begins for slide in slides if slide.string}
     before: dict[int, list[ScoreEvent]] = defaultdict(list)  # by the number of the event after
@@ -84,7 +92,7 @@ def with_slides(score: Score, amount: float, playing: PlayingOptions) -> Score:
             before[note.begins].append(set_on(on.time_s, STRING, slide.string))
             if after.begins not in on_strings:
                 before[after.begins + 1].append(set_then(then.time_s, STRING, None))
-        count = math.ceil(slide_s / STEP_S)
+        count = math.ceil(slide.lasts_s / STEP_S)
         for number in range(1, count + 1):
             at_s = min(note.end_s, then.time_s) - BEND_S - (count - number) * STEP_S
             place = bisect_right(score.events, at_s, key=lambda event: event.time_s)
@@ -112,7 +120,7 @@ def _setting(
 def _slides(
     score: Score, amount: float, playing: PlayingOptions, within: NoteRange
 ) -> Iterator[Slide]:
-    """The slides over leaps that bow and fingers are free for."""
+    """The slides that bow and fingers are free for, over leaps and over some steps."""
     notes = [note for note in notes_of(score) if note.channel != PERCUSSION_CHANNEL]
     states = _states(score, playing, amount)
     for note, after in pairwise(notes):
@@ -122,12 +130,33 @@ def _slides(
             continue
         state, then = states[note.begins], states[after.begins]
         low, high = sorted(_pitch(each, playing, within) for each in (note, after))
-        is_leap = MIN_LEAP < high - low < MAX_LEAP  # not where either is NaN
-        if not is_leap or not _is_free(state) or not _is_free(then) or state.bends != then.bends:
+        rise = after.key - note.key
+        if not _slides_over(high - low, rise > 0, amount, _chance(playing, note, 0)):
+            continue
+        if not _is_free(state) or not _is_free(then) or state.bends != then.bends:
             continue
         string = _string(low, high, (state, then), within)
         if string is not None:
-            yield Slide(note, after, math.copysign(high - low, after.key - note.key), string)
+            semitones = math.copysign(high - low, rise)
+            usual_s = SHORTEST_S + (LONGEST_S - SHORTEST_S) * _chance(playing, note, 1)
+            lasts_s = min(usual_s * min(amount / USUAL_PHRASING, 1.0), MOST * note.length_s)
+            yield Slide(note, after, semitones, string, lasts_s)
+
+
+def _slides_over(semitones: float, is_up: bool, amount: float, chance: float) -> bool:
+    """Whether a slide goes over an interval: over each leap, and some steps by chance (0 to 1)."""
+    if MIN_LEAP < semitones < MAX_LEAP:
+        return True
+    if not MIN_STEP < semitones <= MIN_LEAP:  # nor where it is NaN
+        return False
+    share = THIRD if semitones > THIRD_FROM else NARROW
+    return chance < share * (1.0 if is_up else FALLING) * amount / USUAL_PHRASING
+
+
+def _chance(playing: PlayingOptions, note: ScoreNote, which: int) -> float:
+    """A number from 0 to 1 that a note has under a seed."""
+    number = (playing.seed << 32) + 2 * note.begins + which
+    return Random(number).random()  # noqa: S311 - no secret
 
 
 def _pitch(note: ScoreNote, playing: PlayingOptions, within: NoteRange) -> float:
@@ -161,7 +190,8 @@ def _is_free(state: _State) -> bool:
     row = round(state.values[ARTICULATION])
     bears = bool(BEARS_SLIDE[row]) if 0 <= row < len(BEARS_SLIDE) else True
     is_on = max(state.values[PIZZICATO], state.values[PORTAMENTO]) >= TURNED_ON
-    return bears and not is_on and state.values[BEND] == 0.0 and state.values[PHRASING] > 0.0
+    phrases = min(state.values[PHRASING], state.values[LEFT_HAND]) > 0.0
+    return bears and not is_on and state.values[BEND] == 0.0 and phrases
 
 
 def _string(low: float, high: float, states: Sequence[_State], within: NoteRange) -> float | None:

@@ -24,7 +24,7 @@ from yehu_server.core.player.parameter_indices import VELOCITY
 from yehu_server.errors import ScoreError
 from yehu_server.playing.sources import RESERVED
 from yehu_server.scores.capture import Capture, read_capture
-from yehu_server.scores.chosen_parts import finder_of, says_mpe
+from yehu_server.scores.chosen_parts import finder_of
 from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
 from yehu_server.scores.score import (
@@ -36,6 +36,7 @@ from yehu_server.scores.score import (
     ScorePart,
     errors_name,
     notes_of,
+    says_mpe,
 )
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.tunings import transposed_keys

@@ -175,15 +175,6 @@ def test_a_trill_beats_a_second_above_some_seven_times_a_second_and_a_mordent_on
     assert np.count_nonzero(np.diff(bends("mordent")) != 0.0) == 2
 
 
-def test_an_ordinary_note_is_shaped_as_far_as_phrasing_says():
-    level = [
-        np.abs(played("ordinary", phrasing=phrasing, note_length=1.0)[at(0.25) :, SPEED])
-        for phrasing in (0.0, 0.5)
-    ]
-    assert np.ptp(level[0]) < 1e-9
-    assert 1.1 < level[1].max() / level[1][-1] < 1.6
-
-
 def test_a_portamento_is_a_smooth_curve_that_lasts_its_time():
     playing = held("ordinary", 69, portamento=1.0, portamento_time=200.0)
     playing.play(0.3)

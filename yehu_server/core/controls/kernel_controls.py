@@ -82,6 +82,7 @@ def advance_drifts(c: Any) -> None:
         return
     for i in range(DRIFT_COUNT):
         c.drift[i] += c.drift_slope[i]
+    c.swell += c.swell_slope
     if c.frame % POSITION_UPDATE_FRAMES == 0:
         raised = c.drift[CENTS_DRIFT] * PER_CENT
         c.sounding_drift = 1.0 - raised + 0.5 * raised * raised

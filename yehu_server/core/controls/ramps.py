@@ -115,7 +115,7 @@ def amplitude(c: Any, of: int, decibels: float) -> float:
 def level(c: Any) -> float:
     """Gain from pascals to full scale at this sample."""
     factor = amplitude(c, TO_OUTPUT, c.value[GAIN] + c.value[BALANCE])
-    return float(c.value[LEVEL] * factor / FULL_SCALE_PRESSURE)
+    return float(c.value[LEVEL] * factor / FULL_SCALE_PRESSURE * (1.0 + c.swell))
 
 
 @compiled

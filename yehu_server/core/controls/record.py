@@ -62,6 +62,8 @@ CONTROLS = np.dtype(
         ("drift", np.float64, DRIFT_COUNT),
         ("drift_slope", np.float64, DRIFT_COUNT),
         ("drifting", np.int64),
+        ("swell", np.float64),  # a factor less 1 on the level, and its change in a sample
+        ("swell_slope", np.float64),
         ("sounding_drift", np.float64),
         ("position_drift", np.float64),
         ("sounding_from", np.float64),  # m; end of the sounding length, from the loop
@@ -146,4 +148,5 @@ def clear_motion(controls: Any) -> None:
     controls["vibrato"], controls["bow_displacement"] = 0.0, 0.0
     controls["vibrato_rate_factor"] = controls["vibrato_depth_factor"] = 1.0
     controls["drift"], controls["drift_slope"], controls["drifting"] = 0.0, 0.0, 0
+    controls["swell"] = controls["swell_slope"] = 0.0
     controls["sounding_drift"] = controls["position_drift"] = 1.0

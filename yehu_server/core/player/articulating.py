@@ -29,7 +29,6 @@ from yehu_server.core.player.gestures import (
     begin_slide,
     gain_of,
     note_length,
-    scaled,
     slide_position,
     within_reach,
 )
@@ -88,7 +87,7 @@ def move_bow(p: Any, c: Any, now: float, length: float) -> None:
         g.bow.step += 1
         ramp_ms = g.time_factor * step[RAMP] + 1e3 * step[RAMP_SHARE] * length
         g.move_ends = now + 1e-3 * ramp_ms
-        g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
+        g.speed, g.weight = step[SPEED], step[WEIGHT]
         g.is_off = 0 if step[IS_ON] != 0.0 else 1
         if step[TURNS] != 0.0:
             p.direction = -p.direction

@@ -75,7 +75,8 @@ def set_brilliance(p: Any, c: Any, string: int, pitch: float, effort: float) -> 
         below = above
     gain_db *= p.value[BRILLIANCE]
     p.louder_by = louder_by(p.louder[string], row, part, gain_db)
-    move_parameter(p, c, BODY_BRILLIANCE, gain_db, DEFAULT_RAMP_MS)
+    more_db = p.contours.bright_db
+    move_parameter(p, c, BODY_BRILLIANCE, gain_db + more_db, DEFAULT_RAMP_MS)
     frequency = ABOVE * plain
     ramp_ms = LOWERING_MS if frequency < p.sent[BRILLIANCE_FREQUENCY] else DEFAULT_RAMP_MS
     move_parameter(p, c, BRILLIANCE_FREQUENCY, frequency, ramp_ms)

@@ -39,6 +39,7 @@ from yehu_server.core.player.parameter_indices import (
     INTENSITY,
     IS_ENGINES,
     IS_PLAYER_CONTROLLED,
+    LEFT_HAND,
     LISTENING,
     LOWER_BOUNDS,
     PARAMETER_COUNT,
@@ -175,6 +176,8 @@ def apply_parameter_change(p: Any, c: Any, index: int) -> None:
         notes.update_bow(p, c)
         notes.follow_bend(p, c)
         notes.set_level(p, c)
+        if p.value[PHRASING] > 0.0:  # force and place go with the speed
+            notes.set_bow_pressure(p, c)
     elif index == SPEED:  # a faster bow changes the pitch
         notes.update_bow(p, c)
         notes.follow_bend(p, c)
@@ -182,7 +185,7 @@ def apply_parameter_change(p: Any, c: Any, index: int) -> None:
         notes.set_bow_pressure(p, c)
     elif index == TREMOLO:
         notes.update_bow(p, c)
-    elif index in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING):
+    elif index in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING, LEFT_HAND):
         vibrato.set_vibrato(p, c)
     elif index == ASSIST:
         notes.set_assist(p, c)

@@ -23,6 +23,7 @@ from yehu_server.core.controls.record import (
     SPEED_DRIFT,
 )
 from yehu_server.core.physics.elementary import cos, elementwise, exp, pseudorandom
+from yehu_server.core.player.contours import QUANTITIES
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.parameter_indices import (
     BOW_FORCE,
@@ -31,6 +32,7 @@ from yehu_server.core.player.parameter_indices import (
     BOW_SPEED,
     FINGER_POSITION,
     FINGER_PRESS,
+    PHRASING,
     VARIATION,
 )
 
@@ -53,6 +55,9 @@ SMOOTHING_PER_HOP = 0.15  # of the way to the factors of the next cycle
 
 TIME_CONSTANTS_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
 STAGES = 4
+# The pitch drifts more, at full variation and phrasing by so many cents of these sequences: they
+# move a note within, and leave its median in tune.
+MORE_CENTS, STAGES_WITHIN = 34.0, (1, 2)
 POLES = elementwise(exp, -HOP_S / TIME_CONSTANTS_S)
 # Uniform numbers in -1..1 have a variance of 1/3; the sums have one of 1.
 NOISE_GAINS = np.sqrt(3.0 * (1.0 - POLES**2) / STAGES)
@@ -111,6 +116,7 @@ def advance_drift(p: Any, c: Any) -> None:
     for i in range(DRIFT_COUNT):
         for k in range(STAGES):
             u.slow[i, k] = POLES[k] * u.slow[i, k] + NOISE_GAINS[k] * next_random(p)
+    k = p.contours
     c.drifting = 0
     for i in range(DRIFT_COUNT):
         drift = sum_of(u.slow[i])
@@ -118,13 +124,26 @@ def advance_drift(p: Any, c: Any) -> None:
             drift = (
                 CORRELATION * sum_of(u.slow[LEADING[i]]) + math.sqrt(1.0 - CORRELATION**2) * drift
             )
-        wanted = amount * (DRIFT[i] * drift + TREMOR[i] * u.tremor[HAND[i], 0])
-        if amount == 0.0 or not is_playing(p, i):
-            wanted = DECAY_PER_HOP * c.drift[i] if abs(c.drift[i]) > NEGLIGIBLE else 0.0
+        is_own, before, contour = is_owned(p, i), 0.0, 0.0
+        if i < QUANTITIES:
+            before, contour = k.before[i], k.value[i]
+        own = amount * (DRIFT[i] * drift + TREMOR[i] * u.tremor[HAND[i], 0])
+        if i == CENTS_DRIFT:
+            within = u.slow[i, STAGES_WITHIN[0]] + u.slow[i, STAGES_WITHIN[1]]
+            own += amount * MORE_CENTS * p.value[PHRASING] * within
+        if amount == 0.0 or p.sounding < 0 or not is_own:
+            left = c.drift[i] - (before if is_own else 0.0)
+            own = DECAY_PER_HOP * left if abs(left) > NEGLIGIBLE else 0.0
+        wanted = own + contour if is_own else own
         c.drift_slope[i] = (wanted - c.drift[i]) / p.ear.hop
         if wanted == 0.0 and abs(c.drift[i]) <= NEGLIGIBLE:
             c.drift[i] = c.drift_slope[i] = 0.0
         c.drifting |= 1 if c.drift[i] != 0.0 or c.drift_slope[i] != 0.0 else 0
+    gain = k.gain if is_owned(p, SPEED_DRIFT) else 0.0
+    c.swell_slope = (gain - c.swell) / p.ear.hop
+    if gain == 0.0 and abs(c.swell) <= NEGLIGIBLE:
+        c.swell = c.swell_slope = 0.0
+    c.drifting |= 1 if c.swell != 0.0 or c.swell_slope != 0.0 else 0
     if c.drifting == 0:
         c.sounding_drift = c.position_drift = 1.0
     for k in range(DETECTION_DELAY_HOPS, 0, -1):
@@ -176,10 +195,8 @@ def sum_of(numbers: Any) -> float:
 
 
 @compiled_exactly
-def is_playing(p: Any, drift: int) -> bool:
+def is_owned(p: Any, drift: int) -> bool:
     """Whether the player moves what drifts, and nobody else."""
-    if p.sounding < 0:
-        return False
     index = BOW_SPEED
     if drift == FORCE_DRIFT:
         index = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.is_held[BOW_FORCE] == 0 else BOW_FORCE

@@ -27,33 +27,27 @@ from yehu_server.core.player.parameter_indices import (
 from yehu_server.core.player.parameter_indices import ATTACK as ATTACK_MS
 from yehu_server.core.player.phrasing import (
     HURRIED_ATTACK_MS,
+    USUAL_PHRASING,
     deviate,
 )
 from yehu_server.core.player.velocity import struck_attack
-from yehu_server.params.articulations import ARTICULATIONS, Articulation, BowStep
+from yehu_server.params.articulations import ARTICULATIONS, Articulation
 
 ORDINARY = 0
-# An ordinary note of a phrase, at phrasing SHAPED_AT: the bow comes to it, swells and eases off.
-SHAPED = Articulation(
-    "shaped", "", "a note that swells a little and eases off",
-    bow=(
-        BowStep(speed=0.86, weight=1.1),
-        BowStep(speed=1.1, ramp_share=0.35),
-        BowStep(at_share=0.5, speed=0.8, ramp_share=0.48),
-    ),
-    length_s=1.2,
-)  # fmt: skip
-SHAPED_AT, MIN_SHAPED_S = 0.5, 0.35
-# The attack of a shaped note: its factor for a short note and for a long one (s). By ear; in
-# recordings of an erhu and a violin a tenth of the notes rise within 30 ms and half in 120 to 250.
+# The attack of an ordinary note at USUAL_PHRASING: its factor for a short note and for a long
+# one (s). By ear; in recordings of an erhu and a violin a tenth of the notes rise within 30 ms and
+# half in 120 to 250.
+USUAL_S = 1.2
 SHORT_ATTACK, LONG_ATTACK, LONG_S, UNEVEN_ATTACK = 0.8, 3.4, 1.2, 0.3
+# The same of a bow that turns: the level falls by some 10 dB then, a fiddle's by 5 to 15;
+# in twice this time by 16 (scripts/liveliness.py).
+TURNING = 0.5
 MIN_STOPPED_PITCH = 65.6  # MIDI note: a finger there is over 8 mm from the loop
 STEPS_FRACTION = 0.7  # of a note, for steps that have times of their own
 # The level is this power of the bow's factor, on top of what a faster bow gives, as with dynamics.
 LEVEL_EXPONENT, MIN_FACTOR = 0.6, 0.1
 
-_ROWS: tuple[Articulation, ...] = (*ARTICULATIONS, SHAPED)
-SHAPED_ROW = len(ARTICULATIONS)
+ROWS = len(ARTICULATIONS)
 
 AT, AT_SHARE, RAMP, RAMP_SHARE, SPEED, WEIGHT, IS_ON, TURNS = range(8)  # of a bow's step
 SEMITONES, GLIDE = 2, 3  # of a finger's, after AT and AT_SHARE
@@ -71,27 +65,27 @@ def _padded(rows: Sequence[Sequence[Sequence[float]]], columns: int) -> Any:
     return table
 
 
-BOW_COUNT = np.array([len(row.bow) for row in _ROWS])
-FINGER_COUNT = np.array([len(row.fingers) for row in _ROWS])
+BOW_COUNT = np.array([len(row.bow) for row in ARTICULATIONS])
+FINGER_COUNT = np.array([len(row.fingers) for row in ARTICULATIONS])
 BOW_STEPS = _padded([
     [
         (step.at_ms, step.at_share, step.ramp_ms, step.ramp_share, step.speed, step.weight,
          step.is_on, step.turns)
         for step in row.bow
     ]
-    for row in _ROWS
+    for row in ARTICULATIONS
 ], 8)  # fmt: skip
 FINGER_STEPS = _padded(
     [
         [(step.at_ms, step.at_share, step.semitones, step.glide_ms) for step in row.fingers]
-        for row in _ROWS
+        for row in ARTICULATIONS
     ],
     4,
 )
 SHAPES = np.array([
     (row.attack, row.length_s, row.repeat_ms, row.speed_up, row.times or math.inf, row.tremolo,
      row.tremolo_depth, row.is_plucked, row.pluck_position, row.pluck_force)
-    for row in _ROWS
+    for row in ARTICULATIONS
 ])  # fmt: skip
 
 
@@ -103,23 +97,23 @@ def _reach(row: Articulation) -> tuple[float, float]:
     return min(0.0, -wide, *slides), max(0.0, wide, *slides)
 
 
-REACH = np.array([_reach(row) for row in _ROWS])
+REACH = np.array([_reach(row) for row in ARTICULATIONS])
 # Whether finger and bow are free for a slide over a leap: the one moves no other way, the other
 # neither stops nor leaves the string before the finger is there.
 BEARS_SLIDE = np.array([
     not (row.fingers or row.is_plucked or row.touches)
     and all(step.is_on and step.speed > 0.0 for step in row.bow)
-    for row in _ROWS
+    for row in ARTICULATIONS
 ])  # fmt: skip
 # Whether another finger beats above the note's pitch.
-BEATS = np.array([any(step.semitones > 0.0 for step in row.fingers) for row in _ROWS])
-TOUCHES = np.array([row.touches for row in _ROWS])
-HAS_VIBRATO = np.array([row.vibrato is not None for row in _ROWS])
+BEATS = np.array([any(step.semitones > 0.0 for step in row.fingers) for row in ARTICULATIONS])
+TOUCHES = np.array([row.touches for row in ARTICULATIONS])
+HAS_VIBRATO = np.array([row.vibrato is not None for row in ARTICULATIONS])
 VIBRATOS = np.array([
     (row.vibrato.cents, row.vibrato.hertz, row.vibrato.press, row.vibrato.upward,
      row.vibrato.delay_ms)
     if row.vibrato else (0.0,) * 5
-    for row in _ROWS
+    for row in ARTICULATIONS
 ])  # fmt: skip
 
 # How far the steps of a hand are: the next one, how often they came before, and the time after the
@@ -129,7 +123,6 @@ TRACK = np.dtype([("step", np.int64), ("times", np.int64), ("begins", np.float64
 GESTURE = np.dtype(
     [
         ("row", np.int64),  # of the tables above
-        ("scale", np.float64),  # of what the bow's factors differ from 1
         ("attack", np.float64),  # factor
         ("bow", TRACK),
         ("speed", np.float64),  # factors
@@ -154,7 +147,7 @@ GESTURE = np.dtype(
 
 
 RESTING = np.zeros(1, GESTURE)[0]  # as `rest` leaves it
-for _field in ("scale", "attack", "speed", "weight", "time_factor"):
+for _field in ("attack", "speed", "weight", "time_factor"):
     RESTING[_field] = 1.0
 RESTING["node"] = NONE
 
@@ -162,7 +155,7 @@ RESTING["node"] = NONE
 @compiled_exactly
 def rest(g: Any) -> None:
     """Do nothing: a steady bow, the finger on the note's pitch."""
-    g.row, g.scale, g.attack = ORDINARY, 1.0, 1.0
+    g.row, g.attack = ORDINARY, 1.0
     g.bow.step = g.bow.times = g.finger.step = g.finger.times = 0
     g.bow.begins = g.finger.begins = 0.0
     g.speed = g.weight = g.time_factor = 1.0
@@ -176,7 +169,7 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
     g = p.gesture
     rest(g)
     number = int(np.rint(p.value[ARTICULATION]))
-    g.row = number if 0 <= number < SHAPED_ROW else ORDINARY
+    g.row = number if 0 <= number < ROWS else ORDINARY
     if g.row == ORDINARY and p.value[PHRASING] > 0.0:
         shape(p, c)
     g.attack *= SHAPES[g.row, ATTACK]
@@ -187,7 +180,7 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
         g.bow.step = BOW_COUNT[g.row]
     while g.bow.step < BOW_COUNT[g.row] and is_immediate(BOW_STEPS[g.row, g.bow.step]):
         step = BOW_STEPS[g.row, g.bow.step]
-        g.speed, g.weight = scaled(g, step[SPEED]), scaled(g, step[WEIGHT])
+        g.speed, g.weight = step[SPEED], step[WEIGHT]
         g.bow.step += 1
     g.gain_db = g.gain_to = gain_of(g)
     if g.bow.step < BOW_COUNT[g.row]:
@@ -219,19 +212,21 @@ def within_reach(p: Any, semitones: float) -> float:
 
 @compiled_exactly
 def shape(p: Any, c: Any) -> None:
-    """Shape an ordinary note as far as phrasing says: its attack, and its swell if it is long.
+    """Shape the attack of an ordinary note as far as phrasing says.
 
-    Only after a rest the bow comes slowly; one that still moves turns at once.
+    Only after a rest the bow comes slowly; one that still moves turns at once. What comes after is
+    in ``contours``.
     """
     g = p.gesture
-    amount = min(p.value[PHRASING] / SHAPED_AT, 1.5)
-    length = note_length(p, SHAPED_ROW)
+    amount = min(p.value[PHRASING] / USUAL_PHRASING, 1.5)
+    length = p.value[NOTE_LENGTH] if p.value[NOTE_LENGTH] > 0.0 else USUAL_S
     uneven = 1.0 + UNEVEN_ATTACK * deviate(p) * min(4.0 * p.value[VARIATION], 1.0)
-    longer = min(length / LONG_S, 1.0) if c.value[BOW_SPEED] == 0.0 else 0.0
-    factor = (SHORT_ATTACK + (LONG_ATTACK - SHORT_ATTACK) * longer) * max(uneven, 0.4)
+    factor = TURNING / max(struck_attack(p), 1.0)
+    if c.value[BOW_SPEED] == 0.0:
+        longer = min(length / LONG_S, 1.0)
+        factor = SHORT_ATTACK + (LONG_ATTACK - SHORT_ATTACK) * longer
+    factor *= max(uneven, 0.4)
     g.attack = max(1.0 + amount * (factor - 1.0), 0.4)
-    if length >= MIN_SHAPED_S:
-        g.row, g.scale = SHAPED_ROW, amount * max(1.0 + 0.4 * deviate(p), 0.0)
 
 
 @compiled_exactly
@@ -280,12 +275,6 @@ def gain_of(g: Any) -> float:
 def is_immediate(step: Any) -> bool:
     """Whether a step of the bow is the state that a note begins in."""
     return bool(step[AT] == step[AT_SHARE] == step[RAMP] == step[RAMP_SHARE] == 0.0)
-
-
-@compiled_exactly
-def scaled(g: Any, factor: float) -> float:
-    """A factor of the bow, as far as the gesture goes."""
-    return float(1.0 + g.scale * (factor - 1.0))
 
 
 @compiled_exactly

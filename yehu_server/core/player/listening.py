@@ -14,6 +14,7 @@ from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
+from yehu_server.core.player.contours import advance_contours
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import DELAY_FRAMES, EAR_SAMPLES, hear
 from yehu_server.core.player.notes import is_touched, reverse_bow_at_end, sounding_pitch
@@ -68,6 +69,7 @@ def update_player(p: Player, c: Controls, sound: Any) -> None:
     Real time: safe.
     """
     p.ear.next += p.ear.hop
+    advance_contours(p, c)
     advance_drift(p, c)
     vary_vibrato(p, c)
     articulate(p, c)

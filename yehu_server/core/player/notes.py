@@ -11,10 +11,10 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import start_ramp
 from yehu_server.core.controls.slots import SILENCE, SPEED
-from yehu_server.core.player import left_hand, right_hand, velocity, vibrato
+from yehu_server.core.player import contours, left_hand, right_hand, velocity, vibrato
 from yehu_server.core.player.bowing import MIN_PRESS, bowing_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
-from yehu_server.core.player.fingering import choose, choose_for_slide, stay
+from yehu_server.core.player.fingering import OPEN, choose, choose_for_slide, learnt_position, stay
 from yehu_server.core.player.gestures import (
     BEARS_SLIDE,
     BEATS,
@@ -26,6 +26,7 @@ from yehu_server.core.player.gestures import (
     begin_slide,
     tremolo_of,
 )
+from yehu_server.core.player.gestures import FINGER_COUNT as FINGER_STEP_COUNT
 from yehu_server.core.player.harmonics import NONE, place_of, string_of
 from yehu_server.core.player.held_keys import NOT_HELD, add_key, find_key, remove_key
 from yehu_server.core.player.intonation import in_tables
@@ -56,9 +57,11 @@ from yehu_server.core.player.parameter_indices import (
 )
 from yehu_server.core.player.phrasing import (
     HURRIED_RELEASE,
+    SCOOP_MS,
     STEP_MS,
     hurried,
     hurry_of,
+    scoop_of,
     slide_of_leap_ms,
     varied_semitones,
     vary_next_note,
@@ -116,7 +119,9 @@ def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
         sound_last(p, c, True, False)
     else:
         p.sounding = SILENT
-        right_hand.lift(p, c, p.value[RELEASE] * hurried(p, HURRIED_RELEASE))
+        release_ms = p.value[RELEASE] * hurried(p, HURRIED_RELEASE)
+        contours.end_contours(p, c, release_ms)
+        right_hand.lift(p, c, release_ms)
         vibrato.end_vibrato(p, c)
 
 
@@ -150,8 +155,9 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     p.stroke_speed_factor = 1.0
     begin_gesture(p, c, is_slur)
     turns = plan_stroke(p, c, requested_speed(p), is_legato)
+    contours.begin_contours(p, c, is_slur)
     slide_ms = 0.0 if at_once and not is_touched(p) else slide_into_note_ms(p, c)
-    p.note_began = c.frame
+    was, p.note_began = p.finger_pitch, c.frame
     if slide_ms > 0.0 and p.string >= 0:
         string, position = begin_from_last(p, slide_ms)
         pitch = p.finger_pitch = note_pitch(p)
@@ -169,6 +175,9 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
             beats = BEATS[p.gesture.row]
             shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p)
             string, position = choose(p, pitch, beats, shakes, requested_speed(p))
+            if not (at_once or beats or is_plucked(p)):
+                position = scooped(p, c, string, position, pitch - was)
+                pitch = p.finger_pitch
     crosses_strings = string != p.string
     left_hand.stop(p, c, string, position, min_press(p, string), slide_ms)
     begin_tuning(p, pitch)
@@ -186,6 +195,24 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     else:
         ramp_ms = CHANGE_MS if turns else SLURRED_MS
         draw(p, c, ramp_ms if is_slur else p.value[ATTACK])
+
+
+@compiled_exactly
+def scooped(p: Any, c: Any, string: int, position: float, rise: float) -> float:
+    """Begin the slide of a note that comes to its pitch from a little below.
+
+    Returns the finger position (m) there, or the one given where the note has no such slide.
+    """
+    g = p.gesture
+    is_free = FINGER_STEP_COUNT[g.row] == 0 and g.bend == p.value[BEND] == 0.0
+    if not is_free or position == OPEN or p.finger_pitch < p.open_note[string] + 1.0:
+        return position
+    scoop = scoop_of(p, c, rise)
+    if scoop == 0.0:
+        return position
+    begin_slide(p, scoop, 0.0, 0.0, 1e-3 * SCOOP_MS)
+    p.finger_pitch = note_pitch(p)
+    return learnt_position(p, string, p.finger_pitch, requested_speed(p))
 
 
 @compiled_exactly
@@ -320,6 +347,7 @@ def set_loudness_balance(p: Any, c: Any) -> None:
     if p.sounding >= 0 or p.is_direct != 0:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
         speed, effort = requested_speed(p), requested_speed(p) * p.value[PRESSURE]
+        effort *= right_hand.arm(p, right_hand.ARM_FORCE)
         if p.is_direct != 0:
             speed, effort = p.speed, p.effort
         velocity.set_loudness_balance(p, c, pitch, speed, effort)

@@ -53,7 +53,7 @@ PLAYING_VIBRATO_RATE, PLAYING_VIBRATO_DELAY = (
 )
 VOLUME, EXPRESSION = INDEX["/playing/volume"], INDEX["/playing/expression"]
 ASSIST, VARIATION = INDEX["/playing/assist"], INDEX["/playing/variation"]
-PHRASING = INDEX["/playing/phrasing"]
+PHRASING, LEFT_HAND = INDEX["/playing/phrasing"], INDEX["/playing/left_hand"]
 ATTACK, RELEASE = INDEX["/playing/attack"], INDEX["/playing/release"]
 PORTAMENTO, PORTAMENTO_TIME = INDEX["/playing/portamento"], INDEX["/playing/portamento_time"]
 VELOCITY = INDEX["/playing/velocity"]

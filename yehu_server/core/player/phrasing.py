@@ -10,9 +10,10 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.slots import SIDE
+from yehu_server.core.controls.slots import SIDE, SPEED
 from yehu_server.core.physics.elementary import pseudorandom
 from yehu_server.core.player.parameter_indices import (
+    LEFT_HAND,
     NOTE_LENGTH,
     PHRASING,
     VARIATION,
@@ -32,6 +33,7 @@ def begin_sequence(p: Any, seed: int) -> None:
     p.seed, p.random_count = seed, 0
     p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.random_count = 0.0, 0.0, 0
     p.drift_state.slow_deviate[:] = 0.0
+    p.contours.random_count = 0
 
 
 @compiled_exactly
@@ -68,6 +70,8 @@ def varied_landing(p: Any, landing_ms: float) -> float:
     return float(landing_ms * min(max(factor, 1.0 / MAX_LANDING), MAX_LANDING))
 
 
+USUAL_PHRASING = 0.5  # the default of files, for which sizes are that say nothing else
+INNER = 0.4  # share of what bow force and place do on the inner string, whose pitch they move more
 # At full phrasing; by ear.
 SLIDE_MS, MIN_SLIDE_MS = 130.0, 45.0
 STEP_MS = -1.0  # in place of the time of a slide
@@ -99,16 +103,51 @@ def hurried(p: Any, factor: float) -> float:
 
 
 @compiled_exactly
+def fingered(p: Any) -> float:
+    """How far the left hand phrases, 0 to 1."""
+    return float(p.value[PHRASING] * p.value[LEFT_HAND])
+
+
+# Scoops: how far below its pitch a note begins (cents) at USUAL_PHRASING, and how long it takes to
+# come there; the shortest note that has one. The deviate above which one comes, after a rest, after
+# a step up so wide (semitones), and else.
+MIN_SCOOP_CENTS, MAX_SCOOP_CENTS, SCOOP_MS, SCOOPED_S = 10.0, 20.0, 110.0, 0.4
+RESTED_SCOOP, RISEN_SCOOP, OTHER_SCOOP, RISE = 0.3, 0.5, 1.3, 2.5
+
+
+@compiled_exactly
+def scoop_of(p: Any, c: Any, rise: float) -> float:
+    """Where the finger begins, from a note's pitch (semitones, not above 0), after a rise of some.
+
+    Where the length of the note is not known, it is taken to be as long as the one before.
+    """
+    amount = min(fingered(p) / USUAL_PHRASING, 1.5)
+    length_s = p.value[NOTE_LENGTH]
+    if length_s == 0.0:
+        length_s = p.contours.pace_s
+    if amount == 0.0 or length_s < SCOOPED_S:
+        return 0.0
+    limit = RISEN_SCOOP if rise > RISE else OTHER_SCOOP
+    if c.value[SPEED] == 0.0:
+        limit = RESTED_SCOOP
+    if deviate(p) < limit:
+        return 0.0
+    wide = 0.5 + 0.5 * pseudorandom((p.seed << 32) + p.random_count)
+    return float(-amount * (MIN_SCOOP_CENTS + (MAX_SCOOP_CENTS - MIN_SCOOP_CENTS) * wide) / 100.0)
+
+
+@compiled_exactly
 def slide_of_leap_ms(p: Any, c: Any, leap: float) -> float:
     """Time of a slide over a leap (semitones); STEP_MS where the finger steps.
 
     Not where lengths of notes are known, and so what comes: files have slides that arrive on the
     beat (``scores.slides``).
     """
-    if p.value[PHRASING] == 0.0 or c.value[SIDE] == 0.0 or p.value[NOTE_LENGTH] > 0.0:
+    amount = fingered(p)
+    if amount == 0.0 or c.value[SIDE] == 0.0 or p.value[NOTE_LENGTH] > 0.0:
         return STEP_MS
     is_wide = MIN_LEAP < abs(leap) < MAX_LEAP
     is_long = c.frame - p.note_began > LONG_S * p.rate
     if not is_wide or not is_long:
         return STEP_MS
-    return float(MIN_SLIDE_MS + (SLIDE_MS - MIN_SLIDE_MS) * p.value[PHRASING])
+    return float(MIN_SLIDE_MS + (SLIDE_MS - MIN_SLIDE_MS) * amount)

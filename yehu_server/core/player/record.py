@@ -16,6 +16,7 @@ from yehu_server.core.player.bowing import (
     default_bowing_table,
 )
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
+from yehu_server.core.player.contours import CONTOURS
 from yehu_server.core.player.drift import DRIFT_STATE
 from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
@@ -116,6 +117,7 @@ PLAYER = np.dtype(
         ("seed", np.int64),
         ("random_count", np.int64),  # drawn so far
         ("drift_state", DRIFT_STATE),  # drift and tremor
+        ("contours", CONTOURS),  # of the bow
         # The instrument.
         ("bridge_x", np.float64),  # m
         ("a4", np.float64),  # Hz
@@ -222,7 +224,6 @@ def end_all(player: Any, controls: Any) -> None:
     reset_ear(player["ear"], int(controls["frame"]))  # a hop may be half done
     player["direction"], player["stroke_speed_factor"] = UP, 1.0
     player["gesture"] = RESTING
-    for name in DRIFT_STATE.names or ():
-        player["drift_state"][name] = 0
+    player["drift_state"], player["contours"] = np.zeros((), DRIFT_STATE), np.zeros((), CONTOURS)
     for index in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):
         controls["target"][SLOT_OF[index]] = 0.0

@@ -7,7 +7,7 @@ from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SIDE
-from yehu_server.core.physics.elementary import exp2
+from yehu_server.core.physics.elementary import exp2, log2
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -41,6 +41,7 @@ from yehu_server.core.player.parameter_indices import (
     FINGER_COUNT,
     FINGER_PRESS,
     INTENSITY,
+    PHRASING,
     PLUCK_FORCE,
     PLUCK_POSITION,
     POSITION,
@@ -48,7 +49,7 @@ from yehu_server.core.player.parameter_indices import (
     RELEASE,
     SPEED,
 )
-from yehu_server.core.player.phrasing import HURRIED_WEIGHT, hurried
+from yehu_server.core.player.phrasing import HURRIED_WEIGHT, INNER, USUAL_PHRASING, hurried
 from yehu_server.core.player.velocity import (
     ATTACK_PRESSURE_MS,
     attack_pressure_factor,
@@ -75,6 +76,9 @@ MIN_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow i
 # period. Tried at 0.3 to 0.9 and 60 to 200 ms, F4 to B4, at three dynamics. Hurried strokes have
 # little pressure already.
 INNER_ATTACK_FRACTION, MIN_INNER_ATTACK, INNER_ATTACK_MS = 0.65, 0.4, 150.0
+# Louder is heavier and nearer to the bridge [Schoonderwaldt], at phrasing USUAL_PHRASING: powers of
+# what dynamics and velocity do to the speed, and the largest factor. By ear.
+ARM_FORCE, ARM_PLACE, MAX_ARM = 0.25, -0.2, 1.2
 # Force of a pluck at medium pressure. By ear.
 PLUCK_FORCE_N, MEDIUM_PRESSURE = 1.2, 0.4
 MAX_PLUCK_FORCE_N = find("/pluck/force").hi
@@ -98,6 +102,20 @@ def requested_speed(p: Any) -> float:
 
 
 @compiled_exactly
+def arm(p: Any, exponent: float) -> float:
+    """What louder playing does to the bow's force or place, as a factor: a power of its speed.
+
+    As far as phrasing says; 1 at the defaults of dynamics, intensity and velocity.
+    """
+    if p.value[PHRASING] == 0.0:
+        return 1.0
+    louder = requested_dynamics(p) * struck_speed(p)
+    exponent *= p.value[PHRASING] / USUAL_PHRASING * (INNER if p.string == 0 else 1.0)
+    power = exponent * log2(max(louder, MIN_DYNAMICS))
+    return float(min(max(exp2(power), 1.0 / MAX_ARM), MAX_ARM))
+
+
+@compiled_exactly
 def bowing_of(p: Any, pitch: float, column: int) -> float:
     """One value of how a pitch is bowed on the string of the fingering; see `bowing_value`."""
     string = max(p.string, 0)
@@ -108,7 +126,9 @@ def bowing_of(p: Any, pitch: float, column: int) -> float:
 @compiled_exactly
 def requested_position(p: Any) -> float:
     """The bow position that is asked for, as a fraction of the sounding length."""
-    return float(p.value[POSITION] if p.gesture.node == NONE else HARMONIC_BOW_POSITION)
+    if p.gesture.node != NONE:
+        return float(HARMONIC_BOW_POSITION)
+    return float(p.value[POSITION] * arm(p, ARM_PLACE))
 
 
 @compiled_exactly
@@ -132,6 +152,7 @@ def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     pressure = (
         p.value[PRESSURE] * p.pressure_variation * p.gesture.weight * hurried(p, HURRIED_WEIGHT)
     )
+    pressure *= arm(p, ARM_FORCE)
     if is_sounding:
         for column in range(BOWING_SIZE):
             p.bowing[column] = bowing_of(p, pitch, column)

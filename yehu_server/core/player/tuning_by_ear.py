@@ -13,7 +13,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.ear import PITCH_CERTAINTY, learning_bin, learnt_cents
 from yehu_server.core.player.intonation import position_of
 from yehu_server.core.player.ownership import move_parameter
-from yehu_server.core.player.parameter_indices import FINGER_POSITION, LISTENING, PRESS
+from yehu_server.core.player.parameter_indices import FINGER_POSITION, LISTENING, PHRASING, PRESS
 from yehu_server.core.player.right_hand import requested_speed
 
 # Parts of an error that are corrected in a second: of a small error (cents), of a large one. Some
@@ -23,6 +23,7 @@ SMALL_ERROR_PER_S, LARGE_ERROR_PER_S, SMALL_CENTS, LARGE_CENTS = 2.5, 12.0, 4.0,
 # A pitch that is off by FAR_CENTS for JUMP_HOPS hops, and then on the other side, has jumped; after
 # MAX_JUMPS the finger rests.
 FAR_CENTS, JUMP_HOPS, MAX_JUMPS = 2.5, 16, 2
+MOVED_CENTS = 8.0  # the same under a bow arm that moves, which moves the pitch
 MAX_CENTS = 100.0  # of all corrections
 TOLERANCE_CENTS = 0.3  # nearer than this the finger rests
 # A pitch that follows the finger needs a correction as large as its first error. Beyond this part
@@ -82,7 +83,7 @@ def jumps(p: Any, wanted: float) -> int:
 
     Between two such places the finger would go to and fro for ever.
     """
-    if abs(wanted) > FAR_CENTS:
+    if abs(wanted) > (FAR_CENTS if p.value[PHRASING] == 0.0 else MOVED_CENTS):
         side = 1 if wanted > 0.0 else -1
         if side == p.side_heard:
             p.times_heard += 1

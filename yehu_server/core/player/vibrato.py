@@ -21,7 +21,6 @@ from yehu_server.core.player.ownership import DEFAULT_RAMP_MS, invalidate_sent, 
 from yehu_server.core.player.parameter_indices import (
     BEND,
     NOTE_LENGTH,
-    PHRASING,
     PLAYING_VIBRATO_DELAY,
     PLAYING_VIBRATO_PRESS,
     PLAYING_VIBRATO_RATE,
@@ -33,6 +32,7 @@ from yehu_server.core.player.parameter_indices import (
     VIBRATO_RATE,
     VIBRATO_UPWARD,
 )
+from yehu_server.core.player.phrasing import fingered
 from yehu_server.core.player.vibrato_table import CENTRE, DEFAULT_DEPTH_CENTS, DEPTH_SHARE, STEPS
 
 # The player's own, at full phrasing; by ear.
@@ -93,7 +93,7 @@ def has_vibrato(p: Any) -> bool:
 @compiled_exactly
 def is_sure(p: Any) -> bool:
     """Whether phrasing gives a note a vibrato, and it is known to last long enough for one."""
-    is_long = p.value[PHRASING] > 0.0 and p.value[NOTE_LENGTH] >= AUDIBLE_FROM_S
+    is_long = fingered(p) > 0.0 and p.value[NOTE_LENGTH] >= AUDIBLE_FROM_S
     is_straight = has_vibrato(p) and VIBRATOS[p.gesture.row, CENTS] == 0.0
     return bool(is_long and not is_straight)
 
@@ -105,13 +105,13 @@ def requested_cents(p: Any) -> float:
         return float(p.value[VIBRATO])
     above = vibrated_pitch(p) - p.open_note[max(p.string, 0)]
     near = min(max(above / WHOLE_FROM, 0.0), 1.0)
-    return float(p.value[PHRASING] * OWN_CENTS * (AT_NUT + (1.0 - AT_NUT) * near))
+    return float(fingered(p) * OWN_CENTS * (AT_NUT + (1.0 - AT_NUT) * near))
 
 
 @compiled_exactly
 def requested_delay_ms(p: Any) -> float:
     """Time in which the vibrato of a new note comes: as requested; the player's own comes late."""
-    if p.value[VIBRATO] > 0.0 or p.value[PHRASING] == 0.0:
+    if p.value[VIBRATO] > 0.0 or fingered(p) == 0.0:
         return float(p.value[PLAYING_VIBRATO_DELAY])
     return float(max(p.value[PLAYING_VIBRATO_DELAY], OWN_DELAY_MS))
 

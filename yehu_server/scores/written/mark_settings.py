@@ -18,7 +18,7 @@ from yehu_server.scores.written.notated import FORCED, Note, Part, Sign
 
 Values = dict[str, float]
 
-PHRASING = "/playing/phrasing"
+LEFT_HAND = "/playing/left_hand"
 ARTICULATION, TREMOLO_DEPTH = "/playing/articulation", "/playing/tremolo_depth"
 DIRECTION, STRING, TREMOLO = "/playing/direction", "/playing/string", "/playing/tremolo"
 PIZZICATO, PRESSURE, VIBRATO = "/playing/pizzicato", "/playing/pressure", "/playing/vibrato"
@@ -225,7 +225,7 @@ def _vibrato(cents: float | None) -> Values:
     if cents is None:
         return {}
     # At 0 the player would shake long notes by itself.
-    return {VIBRATO: cents} if cents > 0.0 else {VIBRATO: 0.0, PHRASING: 0.0}
+    return {VIBRATO: cents} if cents > 0.0 else {VIBRATO: 0.0, LEFT_HAND: 0.0}
 
 
 def _fingered(note: Note, finger: float | None, within: NoteRange) -> Values:

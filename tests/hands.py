@@ -81,6 +81,7 @@ class Watched(Instrument):
         index: int = 0,
         value: float = 0.0,
         other: float = 0.0,
+        sender: int = 0,  # noqa: ARG002 - as Instrument.post
     ) -> bool:
         self._count += 1
         at = self._count if frame is None else frame

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 
 import forks
 import pytest
@@ -10,7 +11,6 @@ from commands import COMMAND
 
 pytest.importorskip("resource", reason="there is no such limit on Windows")
 
-from yehu_server.cli import serve as limits
 from yehu_server.cli.serve import FILES_NEEDED, MAX_FILES, allow_files
 
 
@@ -66,6 +66,6 @@ class System:
 )
 def test_as_many_files_are_taken_as_the_user_may_have(monkeypatch, before, after):
     system = System(*before)
-    monkeypatch.setattr(limits, "resource", system)
+    monkeypatch.setitem(sys.modules, "resource", system)
     allow_files(40)
     assert system.limits == after

@@ -49,7 +49,9 @@ def test_what_was_learned_live_changes_no_rendering_but_where_it_is_named(render
     assert told["mapping"] == {"name": "keyboard", "files": [str(shipped)]}
     assert err == ""
     of_base = rendered("--mapping", based)[0]
-    _, own = learn(load("keyboard"), "/playing/pressure", LearnedSource("cc 20"), soft=False)
+    _, own = learn(
+        load("keyboard"), "/playing/pressure", LearnedSource("cc 20"), soft=False, only=True
+    )
     for words in ((), ("--mapping", "keyboard")):
         after, told, err = rendered(*words)
         assert after == before

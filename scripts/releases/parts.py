@@ -135,7 +135,7 @@ def _licence(name: str) -> str:
         for line in about.get_all("Classifier", [])
         if line.startswith("License ::")
     ]
-    stated = about["License-Expression"] or ", ".join(kinds) or about["License"] or "?"
+    stated = about.get("License-Expression") or ", ".join(kinds) or about.get("License") or "?"
     return " ".join(stated.split("\n")[0].split())
 
 

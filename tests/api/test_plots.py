@@ -126,7 +126,7 @@ def test_regimes_are_drawn_where_they_were_found(plt):
     (mesh,) = axes.collections
     np.testing.assert_array_equal(mesh.get_array().reshape(3, 2), grid)
     assert labels(axes) == ["unbowed", "silent", "helmholtz", "raucous"]
-    assert axes.get_title() == "Helmholtz: 16.7 % ± 2.5 by the sample rate"
+    assert axes.get_title() == "Helmholtz: 16.7 % ± 3.3 by the sample rate"
     assert axes.get_xlim() == pytest.approx((0.05, 0.25))
     plt.figure()
     turned = yehu.plot.regimes(found, "bow_force", "bow_velocity")

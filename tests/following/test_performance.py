@@ -91,7 +91,7 @@ def test_its_midi_file_has_the_same_notes_and_bends(tmp_path):
     assert [note.key for note in notes_of(again)] == [note.key for note in notes_of(found.score)]
     wheel = [event.message.pitch for event in again.events if event.message.type == "pitchwheel"]
     assert wheel[0] * 24 / 8191 == pytest.approx(0.3, abs=0.01)
-    assert set(lost) == {"/playing/attack", "/playing/variation"}
+    assert set(lost) == {"/playing/attack", "/playing/phrasing", "/playing/variation"}
 
 
 def test_a_c5_that_moves_is_not_played_on_the_open_string():

@@ -54,6 +54,7 @@ class Instrument(Leader):
         index: int = 0,
         value: float = 0.0,
         other: float = 0.0,
+        sender: int = 0,  # noqa: ARG002 - as Instrument.post
     ) -> bool:
         assert 0 <= kind < len(ALL_KINDS)
         assert isinstance(index, (int, np.integer))

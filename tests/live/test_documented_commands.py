@@ -32,10 +32,14 @@ from yehu_server.live.web.server import WebOptions
 
 IN_TEXT = ("yehu-server ", "dask ", "openssl ", "pip ")  # blocks of text that begin so are shell
 NOT_GIVEN = {  # patterns of lines
+    r"scripts/release\b": "an hour, network: it makes a release and tries it",
     r"scripts/test\b|\.venv/bin/pytest": "hours: these are the tests themselves",
     r"\.venv/bin/python tests/fuzz": "minutes: scripts/test --nightly fuzzes",
     r"scripts/generate|\.venv/bin/python scripts/": "they write this checkout: tests/test_docs.py",
     r"git |cd ": "network",
+    r"sudo |python3 -m venv|mkdir |ln |cp ": "root, or they install: scripts/releases/trials.py",
+    r".*pw-jack |systemctl |journalctl |loginctl ": "a user's own systemd and PipeWire",
+    r"\S*/bin/(pip|yehu-server) ": "network: scripts/releases/trials.py",
     r"pip |dask |openssl |.* --dask ": "network: tests/test_render_cluster.py has a cluster",
     r".* serve .*(--lan|--osc 192)": "network: tests/live/page/test_guests.py",
     r".* practise ": "a quarter of an hour: tests/lab/practising/",
@@ -83,7 +87,8 @@ def desk(tmp_path, monkeypatch, everything) -> Path:
             path.write_text(re.sub(r"(steps|levels|count) = \d+", r"\1 = 2", text), "utf-8")
     phrase = notes((0.0, 0.3, 69, 80), (0.3, 0.3, 72, 90)) + notes((0.0, 0.6, 77, 80), channel=2)
     for name in ("tune", "a", "b", "old", "opera", "quartet"):
-        midi_file(tmp_path / f"{name}.mid", phrase)
+        more = notes((0.0, 0.3, 48, 80), channel=3) + notes((0.0, 0.3, 60, 80), channel=4)
+        midi_file(tmp_path / f"{name}.mid", phrase + more if name == "quartet" else phrase)
     songs = mido.MidiFile(type=2, ticks_per_beat=500)
     songs.tracks += 3 * mido.MidiFile(tmp_path / "tune.mid").tracks
     songs.save(tmp_path / "collection.mid")

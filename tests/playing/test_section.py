@@ -72,7 +72,7 @@ class Kept:
     def midi(self):
         return self._midi[0]
 
-    def post(self, kind, *, frame=None, index=0, value=0.0, other=0.0) -> bool:
+    def post(self, kind, *, frame=None, index=0, value=0.0, other=0.0, **_) -> bool:
         m, at = self.midi, self.frame if frame is None else frame
         places = self._midi.ctypes.data, self.tables.ctypes.data
         interpret.call(*places, at, kind, index, value, other)

@@ -12,7 +12,8 @@ import pytest
 import yehu_server as yehu
 
 RATE = 22050
-NOTES = ((67, 0), (74, 1), (79, 2))  # keys, each with a seed of its own
+KEYS = (67, 74, 79)
+SEEDS = (1, 2, 3)  # a note is judged over some
 
 
 @pytest.fixture
@@ -52,24 +53,24 @@ def width_cents(sound: np.ndarray, key: int) -> float:
 
 
 def test_the_wheel_moves_the_level_over_some_20_db_and_never_to_silence(rendered) -> None:
-    for key, seed in NOTES:
-        levels = [
-            level_db(rendered(key, wheel(127, value), seed)) for value in (0, 32, 64, 95, 127)
-        ]
+    def level(key: int, messages: Sequence[mido.Message]) -> float:
+        return float(np.median([level_db(rendered(key, messages, seed)) for seed in SEEDS]))
+
+    for key in KEYS:
+        levels = [level(key, wheel(127, value)) for value in (0, 32, 64, 95, 127)]
         assert (np.diff(levels) > 2.0).all(), (key, levels)
         assert 17.0 < levels[-1] - levels[0] < 22.0, (key, levels)
-        untouched = level_db(rendered(key, [], seed))
-        assert levels[3] == pytest.approx(untouched, abs=0.5), key
+        assert levels[3] == pytest.approx(level(key, []), abs=1.0), key
 
 
 def test_a_wheel_that_stays_down_or_is_reset_counts_as_not_moved(rendered) -> None:
-    untouched = rendered(74, [], 0)
-    np.testing.assert_array_equal(rendered(74, wheel(0, 0), 0), untouched)
+    untouched = rendered(74, [], 1)
+    np.testing.assert_array_equal(rendered(74, wheel(0, 0), 1), untouched)
     reset = mido.Message("control_change", control=121, value=0)
-    assert level_db(rendered(74, [*wheel(30), reset], 0)) == pytest.approx(
+    assert level_db(rendered(74, [*wheel(30), reset], 1)) == pytest.approx(
         level_db(untouched), abs=0.5
     )
-    assert level_db(rendered(74, wheel(1, 0), 0)) < level_db(untouched) - 10.0
+    assert level_db(rendered(74, wheel(1, 0), 1)) < level_db(untouched) - 10.0
 
 
 def test_expression_multiplies_down_to_the_bow_leaving_the_string(rendered) -> None:
@@ -82,7 +83,7 @@ def test_expression_multiplies_down_to_the_bow_leaving_the_string(rendered) -> N
 
 @pytest.mark.parametrize("kind", ["aftertouch", "polytouch"])
 def test_aftertouch_rocks_the_finger_the_more_the_harder_it_is(rendered, kind: str) -> None:
-    for key, seed in NOTES:
+    for key, seed in zip(KEYS, SEEDS, strict=True):
         own = {"note": key} if kind == "polytouch" else {}
         widths = [
             width_cents(rendered(key, [mido.Message(kind, value=value, **own)], seed), key)

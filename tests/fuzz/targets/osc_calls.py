@@ -85,6 +85,14 @@ def mapping():
     return load("keyboard-expressive")
 
 
+def tick(handler: OscHandler) -> None:
+    """Do what is due."""
+    for steps, _peer, _size in handler.due():
+        for _ in steps:
+            pass
+    handler.clients.flush()
+
+
 def argument(program: Program) -> tuple[str, bytes]:
     """A type tag, and the argument's bytes."""
     kind = program.byte()
@@ -143,7 +151,7 @@ def osc_calls(data: bytes) -> None:
         def take(what: bytes) -> None:
             for _ in handler.handle(what, peer, clock.monotonic_ns()):
                 pass
-            handler.tick()
+            tick(handler)
 
         program = Program(data)
         for _ in range(MAX_PACKETS):
@@ -153,12 +161,12 @@ def osc_calls(data: bytes) -> None:
             pause_s = 1e-3 * (program.byte() % 64)
             clock.now += pause_s
             instrument.now_s += pause_s
-            handler.tick()
+            tick(handler)
         check_values(player)
         take(pack("/yehu/panic"))
         clock.now += 1.0
         check_silence(player, instrument)
-        handler.tick()
+        tick(handler)
         assert handler.waiting == 0
     for answer in (
         *peer.packets,

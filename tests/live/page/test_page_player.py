@@ -49,7 +49,7 @@ class Recorder(Leader):
         self.commands: list[Requested] = []
         self.posted = 0
 
-    def post(self, kind, *, frame=None, index=0, value=0.0, other=0.0) -> bool:
+    def post(self, kind, *, frame=None, index=0, value=0.0, other=0.0, **_) -> bool:
         self.posted += 1
         at = -self.posted if frame is None else frame  # what is for now has a frame of its own
         for command in self.interpret(at, kind, index, value, other):

@@ -46,7 +46,7 @@ def reported(monkeypatch) -> list[dict[str, Any]]:
     events: list[dict[str, Any]] = []
     send = lambda event, **details: events.append({"event": event, **details})  # noqa: E731
     monkeypatch.setattr(module_process, "Parent", lambda: SimpleNamespace(send=send))
-    monkeypatch.setattr(module_process.os, "nice", lambda _: None)
+    monkeypatch.setattr(module_process, "lower_priority", lambda _: None)
     module_process.main()
     return events
 

@@ -52,7 +52,7 @@ def test_what_is_recorded_is_the_note_that_was_played_on_both_sides_of_a_room(fo
     assert abs(off_by(sound, rate)) < 26.0  # as wide as the vibrato, of which it hears a turn or so
     # They differ by the room and the body's sides, and are about as loud.
     left, right = sound.T.astype(float)
-    assert 0.3 < np.corrcoef(left, right)[0, 1] < 0.999
+    assert 0.1 < np.corrcoef(left, right)[0, 1] < 0.999
     assert np.mean(left**2) == pytest.approx(np.mean(right**2), rel=0.5)
 
 

@@ -7,7 +7,7 @@ residual of friction shows, and to g and theta, which other tests hold.
 
 from __future__ import annotations
 
-from yehu_server.compile.jit import compiled
+from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.bow import contact_velocity
 from yehu_server.core.physics.friction import power_off_law
 from yehu_server.core.physics.grid import interpolate
@@ -38,7 +38,7 @@ from yehu_server.core.physics.pluck import pluck_power
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
 
 
-@compiled
+@compiled_exactly
 def string_energy(model: Model, i: int, u_next: Array, u: Array) -> float:
     """h_s of eq. (55a) for string `i` (J): kinetic, tension and its modulation, stiffness."""
     k, h, N = model.k, model.h[i], model.N[i]
@@ -63,7 +63,7 @@ def string_energy(model: Model, i: int, u_next: Array, u: Array) -> float:
     )
 
 
-@compiled
+@compiled_exactly
 def string_loss(model: Model, i: int, u_next: Array, u_prev: Array) -> float:
     """q_s of eq. (56b) for string `i` (W), with what felt takes."""
     h, N = model.h[i], model.N[i]
@@ -87,7 +87,7 @@ def string_loss(model: Model, i: int, u_next: Array, u_prev: Array) -> float:
     )
 
 
-@compiled
+@compiled_exactly
 def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
     """Total of eqs. (55a)-(55e) at n + 1/2 (J)."""
     k = model.k
@@ -110,7 +110,7 @@ def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
     return float(total)
 
 
-@compiled
+@compiled_exactly
 def record_energy(
     model: Model, s: Motion, c: Contacts, w: Work, control: Array, before: float, row: Array
 ) -> float:

@@ -43,6 +43,7 @@ from yehu_server.core.player.parameter_indices import (
     PIZZICATO,
     PRESSURE,
     SLOT_OF,
+    VARIATION,
     VELOCITY,
 )
 from yehu_server.core.player.phrasing import INNER, USUAL_PHRASING
@@ -112,9 +113,10 @@ CONTOURS = np.dtype(
 
 @compiled_exactly
 def chance(p: Any) -> float:
-    """The next random number of the contours, -1 to 1."""
+    """The next random number of the contours, -1 to 1; without variation no seed changes it."""
     p.contours.random_count += 1
-    return pseudorandom((p.seed << 32) + CONTOURS_FROM + p.contours.random_count)
+    seed = p.seed if p.value[VARIATION] > 0.0 else 0
+    return pseudorandom((seed << 32) + CONTOURS_FROM + p.contours.random_count)
 
 
 @compiled_exactly

@@ -135,7 +135,10 @@ def _licence(name: str) -> str:
         for line in about.get_all("Classifier", [])
         if line.startswith("License ::")
     ]
-    stated = about.get("License-Expression") or ", ".join(kinds) or about.get("License") or "?"
+    expression, licence = (
+        about[field] if field in about else "" for field in ("License-Expression", "License")
+    )
+    stated = expression or ", ".join(kinds) or licence or "?"
     return " ".join(stated.split("\n")[0].split())
 
 

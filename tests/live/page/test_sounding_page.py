@@ -53,7 +53,7 @@ def test_what_is_recorded_is_the_note_that_was_played_on_both_sides_of_a_room(fo
     # They differ by the room and the body's sides, and are about as loud.
     left, right = sound.T.astype(float)
     assert 0.1 < np.corrcoef(left, right)[0, 1] < 0.999
-    assert np.mean(left**2) == pytest.approx(np.mean(right**2), rel=0.5)
+    assert 0.4 < np.mean(left**2) / np.mean(right**2) < 2.5  # one note, in a room that answers
 
 
 @pytest.mark.usefixtures("found")

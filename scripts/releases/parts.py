@@ -135,9 +135,7 @@ def _licence(name: str) -> str:
         for line in about.get_all("Classifier", [])
         if line.startswith("License ::")
     ]
-    expression, licence = (
-        about[field] if field in about else "" for field in ("License-Expression", "License")
-    )
+    expression, licence = (about.get(field, "") for field in ("License-Expression", "License"))
     stated = expression or ", ".join(kinds) or licence or "?"
     return " ".join(stated.split("\n")[0].split())
 

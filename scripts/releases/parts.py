@@ -135,8 +135,8 @@ def _licence(name: str) -> str:
         for line in about.get_all("Classifier", [])
         if line.startswith("License ::")
     ]
-    expression, licence = (about.get(field, "") for field in ("License-Expression", "License"))
-    stated = expression or ", ".join(kinds) or licence or "?"
+    expressions, licences = map(about.get_all, ("License-Expression", "License"))
+    stated = ", ".join(expressions or kinds or licences or ["?"])
     return " ".join(stated.split("\n")[0].split())
 
 

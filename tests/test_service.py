@@ -30,7 +30,7 @@ def test_its_command_is_one_of_ours_with_options_that_are_there():
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="there is no systemd-analyze")
 def test_systemd_finds_nothing_wrong_with_it(tmp_path):
     # With a program that is there: it checks that, too.
-    text = UNIT.read_text("utf-8").replace("%h/.local/bin/yehu-server", sys.executable)
+    text = UNIT.read_text("utf-8").replace("%h/.local/bin/yehu-server", f'"{sys.executable}"')
     unit = tmp_path / "yehu-server.service"
     unit.write_text(text, "utf-8")
     done = subprocess.run(

@@ -21,7 +21,9 @@ from typing import Any
 
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
+from numba.core.extending import _Intrinsic
 from numba.core.serialize import dumps
+from numba.core.types import Type
 
 from yehu_server.compile import levels
 from yehu_server.compile.libraries import KINDS, PartLibrary, SourceLibrary
@@ -83,7 +85,10 @@ def _result(context: Any, library: Any, function: Any, environment: Any, *rest: 
         reload_init=reload_init,
         referenced_envs=referenced_envs,
     )
+    engine = getattr(library.codegen, "_engine", None)  # a part has none
     for each in referenced_envs:
+        if engine is not None and not engine.get_global_value_address(each.env_name):
+            raise ValueError(f"has no {each.env_name}")  # numba would write to address 0
         library.codegen.set_env(each.env_name, each)
     return made
 
@@ -137,8 +142,17 @@ def code_of(function: Any) -> tuple[Any, ...]:
     """
     code = function.__code__
     constants = [value for value in code.co_consts if value != function.__doc__]
-    cells = [cell.cell_contents for cell in function.__closure__ or ()]
+    cells = [_closed_over(cell.cell_contents) for cell in function.__closure__ or ()]
     return code.co_code, code.co_names, dumps((constants, cells))
+
+
+def _closed_over(value: Any) -> Any:
+    """A value as all processes write it: numba numbers types and intrinsics in each anew."""
+    if isinstance(value, Type):
+        return str(value)
+    if isinstance(value, _Intrinsic):
+        return code_of(value._defn)  # noqa: SLF001 - there is no other way
+    return value
 
 
 def short_hash(*what: Any) -> str:

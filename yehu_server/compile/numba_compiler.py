@@ -6,12 +6,14 @@ for. In the place of a `jit.Native` it sees an external function.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from functools import cache
 from typing import Any
 
 import numba
 from numba import types
+from numba.core.bytecode import FunctionIdentity
 from numba.core.ccallback import CFunc
 from numba.core.cpu_options import FastMathOptions
 from numba.core.registry import cpu_target
@@ -57,14 +59,26 @@ class SourceCompiler(LeanCompiler):
         self.state.library = self.library(self.state.targetctx.codegen(), function.__qualname__)
         return super().compile_extra(function)
 
-    def _compile_bytecode(self) -> Any:
-        # numba names a function by a number of this process. By its code, all processes call it so.
-        named = self.state.func_id
-        named.unique_id = short_hash(named.modname, code_of(named.func))
-        named.unique_name = f"{named.func_qualname}${named.unique_id}"
-        return super()._compile_bytecode()
+
+_identify = FunctionIdentity.from_function.__func__
 
 
+def _identify_by_code(kind: Any, function: Any) -> Any:
+    """Let all processes name a function alike, and numba's own that it calls.
+
+    numba names it by a number of this process. What is kept of a function names others, whose files
+    another process may have written. Functions without a source of theirs may differ by more
+    than their code.
+    """
+    named = _identify(kind, function)
+    if not named.filename.startswith("<"):
+        with contextlib.suppress(Exception):  # what it closes over cannot be written
+            named.unique_id = short_hash(named.modname, code_of(named.func))
+            named.unique_name = f"{named.func_qualname}${named.unique_id}"
+    return named
+
+
+FunctionIdentity.from_function = classmethod(_identify_by_code)
 _hash_of = cache(short_hash)  # names of large records have thousands of letters
 # numba names a record's type by a number of this process, which would be in the names of functions.
 types.Record.mangling_args = property(lambda record: ("Record", (_hash_of(record.name),)))

@@ -101,7 +101,7 @@ class Parser(argparse.ArgumentParser):
         """
         parser = Parser(
             prog=f"{self.prog} {word}",
-            description=f"{text[0].upper()}{text[1:]}.",
+            description=_sentence(text),
             formatter_class=HelpFormatter,
             allow_abbrev=False,
         )
@@ -164,7 +164,12 @@ def add_actions(parser: argparse.ArgumentParser) -> Any:
 
 def add_action(actions: Any, name: str, run: Callable[[argparse.Namespace], int], text: str) -> Any:
     """Add an action of a command, with its help as the description; return its parser."""
-    return add_command(actions, f"{name}: {text}", f"{text[0].upper()}{text[1:]}.", run)
+    return add_command(actions, f"{name}: {text}", _sentence(text), run)
+
+
+def _sentence(text: str) -> str:
+    """A help's text as a description; names in it keep their capitals."""
+    return f"{text[0].upper()}{text[1:]}."
 
 
 def add_instrument(parser: argparse.ArgumentParser) -> None:

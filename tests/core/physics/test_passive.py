@@ -130,12 +130,19 @@ def any_playing(chance, fingers):
 
 
 @pytest.mark.parametrize(
-    "seed", [3, 7, *(pytest.param(n, marks=pytest.mark.slow) for n in range(8, INSTRUMENTS + 6))]
+    "seeds", [range(3, 5), pytest.param(range(5, INSTRUMENTS + 3), marks=pytest.mark.slow)]
 )
-def test_no_part_of_any_instrument_gives_energy(seed):
-    chance = np.random.default_rng(seed)
-    rate = float(np.exp(chance.uniform(np.log(22050.0), np.log(192000.0))))
-    quantities, fingers = any_instrument(chance)
-    run = play(any_playing(chance, fingers), SECONDS, rate, fingers=fingers, quantities=quantities)
-    balanced(run)
-    assert run["power_in"].max() > 1e-3
+def test_no_part_of_any_instrument_gives_energy(seeds):
+    failed = {}
+    for seed in seeds:
+        chance = np.random.default_rng(seed)
+        rate = float(np.exp(chance.uniform(np.log(22050.0), np.log(192000.0))))
+        quantities, fingers = any_instrument(chance)
+        playing = any_playing(chance, fingers)
+        run = play(playing, SECONDS, rate, fingers=fingers, quantities=quantities)
+        try:
+            balanced(run)
+            assert run["power_in"].max() > 1e-3
+        except AssertionError as error:
+            failed[seed] = str(error)
+    assert failed == {}

@@ -124,7 +124,7 @@ def test_louder_is_heavier_and_nearer_to_the_bridge_within_the_note(phrasing):
 def test_most_notes_begin_on_their_pitch_and_some_a_little_below():
     def bend(seed: int, left_hand: float = 1.0) -> float:
         playing = Playing(
-            seed=seed, phrasing=0.5, left_hand=left_hand, note_length=1.0, variation=0.0
+            seed=seed, phrasing=0.5, left_hand=left_hand, note_length=1.0, variation=0.001
         )
         playing.on(76)
         playing.play(0.01)

@@ -19,7 +19,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.record import FORCE_DRIFT, POSITION_DRIFT, SPEED_DRIFT
 from yehu_server.core.controls.slots import SPEED as BOW_SPEED_SLOT
-from yehu_server.core.physics.elementary import exp2, log2, pseudorandom
+from yehu_server.core.physics.elementary import exp2, log2
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,
@@ -43,10 +43,9 @@ from yehu_server.core.player.parameter_indices import (
     PIZZICATO,
     PRESSURE,
     SLOT_OF,
-    VARIATION,
     VELOCITY,
 )
-from yehu_server.core.player.phrasing import INNER, USUAL_PHRASING
+from yehu_server.core.player.phrasing import INNER, USUAL_PHRASING, chance
 from yehu_server.core.player.velocity import NEUTRAL_VELOCITY
 from yehu_server.params.spec import TURNED_ON
 
@@ -112,17 +111,16 @@ CONTOURS = np.dtype(
 
 
 @compiled_exactly
-def chance(p: Any) -> float:
-    """The next random number of the contours, -1 to 1; without variation no seed changes it."""
+def next_chance(p: Any) -> float:
+    """The next random number of the contours, -1 to 1."""
     p.contours.random_count += 1
-    seed = p.seed if p.value[VARIATION] > 0.0 else 0
-    return pseudorandom((seed << 32) + CONTOURS_FROM + p.contours.random_count)
+    return chance(p, CONTOURS_FROM + p.contours.random_count)
 
 
 @compiled_exactly
 def contour_deviate(p: Any) -> float:
     """A number of mean 0 and variance 1, within MAX_DEVIATE; a uniform one has one of 1/3."""
-    total = chance(p) + chance(p) + chance(p)
+    total = next_chance(p) + next_chance(p) + next_chance(p)
     return float(min(max(total, -MAX_DEVIATE), MAX_DEVIATE))
 
 
@@ -198,7 +196,7 @@ def go(s: Any, to: float, begins: float, lasts: float) -> None:
 def wander_on(p: Any, i: int, now: float) -> None:
     """Begin the next segment of a wandering."""
     k = p.contours
-    lasts = SHORTEST_S[i] + (LONGEST_S[i] - SHORTEST_S[i]) * 0.5 * (1.0 + chance(p))
+    lasts = SHORTEST_S[i] + (LONGEST_S[i] - SHORTEST_S[i]) * 0.5 * (1.0 + next_chance(p))
     go(k.wander[i], k.wandering * WANDERS[i] * contour_deviate(p), now, lasts)
 
 
@@ -238,12 +236,14 @@ def advance_contours(p: Any, c: Any) -> None:
             wander_on(p, i, now)
         follow(k.wander[i], now)
         k.value[i] = s.now + k.wander[i].now
-    calm = INNER if p.string == 0 else 1.0
-    if p.string == 0 and p.position == OPEN:  # which no finger tunes
+    is_inner = p.string == 0
+    calm = INNER if is_inner else 1.0
+    if is_inner and p.position == OPEN:  # which no finger tunes
         calm = 0.0
     k.value[FORCE_DRIFT] *= calm
-    k.value[POSITION_DRIFT] *= calm
-    k.value[SPEED_DRIFT] *= INNER_SPEED if p.string == 0 else 1.0
+    # On the inner string the place moves the pitch: F#4, G#4 and A4 by 30 cents and more.
+    k.value[POSITION_DRIFT] *= 0.0 if is_inner else 1.0
+    k.value[SPEED_DRIFT] *= INNER_SPEED if is_inner else 1.0
     k.value[SPEED_DRIFT] = within_speed(p, c, k.value[SPEED_DRIFT])
     k.value[FORCE_DRIFT] = within_force(p, k.value[FORCE_DRIFT])
     k.value[POSITION_DRIFT] = min(max(k.value[POSITION_DRIFT], -MAX_PLACE), MAX_PLACE)

@@ -116,7 +116,7 @@ def advance_drift(p: Any, c: Any) -> None:
     for i in range(DRIFT_COUNT):
         for k in range(STAGES):
             u.slow[i, k] = POLES[k] * u.slow[i, k] + NOISE_GAINS[k] * next_random(p)
-    k = p.contours
+    contours = p.contours
     c.drifting = 0
     for i in range(DRIFT_COUNT):
         drift = sum_of(u.slow[i])
@@ -126,7 +126,7 @@ def advance_drift(p: Any, c: Any) -> None:
             )
         is_own, before, contour = is_owned(p, i), 0.0, 0.0
         if i < QUANTITIES:
-            before, contour = k.before[i], k.value[i]
+            before, contour = contours.before[i], contours.value[i]
         own = amount * (DRIFT[i] * drift + TREMOR[i] * u.tremor[HAND[i], 0])
         if i == CENTS_DRIFT:
             within = u.slow[i, STAGES_WITHIN[0]] + u.slow[i, STAGES_WITHIN[1]]
@@ -139,7 +139,7 @@ def advance_drift(p: Any, c: Any) -> None:
         if wanted == 0.0 and abs(c.drift[i]) <= NEGLIGIBLE:
             c.drift[i] = c.drift_slope[i] = 0.0
         c.drifting |= 1 if c.drift[i] != 0.0 or c.drift_slope[i] != 0.0 else 0
-    gain = k.gain if is_owned(p, SPEED_DRIFT) else 0.0
+    gain = contours.gain if is_owned(p, SPEED_DRIFT) else 0.0
     c.swell_slope = (gain - c.swell) / p.ear.hop
     if gain == 0.0 and abs(c.swell) <= NEGLIGIBLE:
         c.swell = c.swell_slope = 0.0

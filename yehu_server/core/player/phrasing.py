@@ -46,11 +46,18 @@ def vary_next_note(p: Any) -> None:
 
 
 @compiled_exactly
+def chance(p: Any, number: int) -> float:
+    """A random number of the player's seed, -1 to 1; without variation no seed changes it."""
+    seed = p.seed if p.value[VARIATION] > 0.0 else 0
+    return pseudorandom((seed << 32) + number)
+
+
+@compiled_exactly
 def deviate(p: Any) -> float:
     """A number of mean 0 and variance 1; each of the uniform ones has a variance of 1/3."""
     total = 0.0
     for _ in range(SUMMED_UNIFORMS):
-        total += pseudorandom((p.seed << 32) + p.random_count)
+        total += chance(p, p.random_count)
         p.random_count += 1
     return total / math.sqrt(SUMMED_UNIFORMS / 3.0)
 
@@ -132,7 +139,7 @@ def scoop_of(p: Any, c: Any, rise: float) -> float:
         limit = RESTED_SCOOP
     if deviate(p) < limit:
         return 0.0
-    wide = 0.5 + 0.5 * pseudorandom((p.seed << 32) + p.random_count)
+    wide = 0.5 + 0.5 * chance(p, p.random_count)
     return float(-amount * (MIN_SCOOP_CENTS + (MAX_SCOOP_CENTS - MIN_SCOOP_CENTS) * wide) / 100.0)
 
 

@@ -32,7 +32,7 @@ from yehu_server.core.player.parameter_indices import (
     VIBRATO_RATE,
     VIBRATO_UPWARD,
 )
-from yehu_server.core.player.phrasing import fingered
+from yehu_server.core.player.phrasing import chance, fingered
 from yehu_server.core.player.vibrato_table import CENTRE, DEFAULT_DEPTH_CENTS, DEPTH_SHARE, STEPS
 
 # The player's own, at full phrasing; by ear.
@@ -151,4 +151,4 @@ def other_factor(p: Any, number: int, varied: float) -> float:
 @compiled_exactly
 def phase_of(p: Any, c: Any) -> float:
     """Where the vibrato of a note that begins now starts, of one of a section (turns)."""
-    return float(0.5 + 0.5 * pseudorandom((p.seed << 32) + FRAMES_FROM + c.frame))
+    return float(0.5 + 0.5 * chance(p, FRAMES_FROM + c.frame))

@@ -51,7 +51,11 @@ NOT_GIVEN = {  # patterns of lines
     r".* --mapping my.toml": "what the reader adds: tests/test_worked_examples.py",
     r"NUMBA_DISABLE_JIT=1 ": "minutes, uncompiled: tests/test_uncompiled.py",
 }
-SLOW = {f"docs/{name}.md" for name in ("body", "dataset", "playing", "sections", "sweep")}
+SLOW = {
+    *("docs/body.md", "docs/dataset.md", "docs/ensemble.md", "docs/folders.md", "docs/jianpu.md"),
+    *("docs/live.md", "docs/parts.md", "docs/playing.md", "docs/render.md", "docs/sections.md"),
+    "docs/sweep.md",
+}
 OWN = {"docs/ensemble.md": "quartet.toml", "presets/README.md": "my-sound.toml"}  # shown on a page
 SHORT_S = 2.0  # of an example, without --all
 

@@ -1,4 +1,4 @@
-"""With the default mapping the mod wheel draws the bow, and aftertouch rocks the finger."""
+"""With the default mapping the mod wheel draws the bow or plucks; aftertouch rocks the finger."""
 
 from __future__ import annotations
 
@@ -18,16 +18,23 @@ SEEDS = (1, 2, 3)  # a note is judged over some
 
 @pytest.fixture
 def rendered(tmp_path: Path):
-    """A function that renders a note of 2.1 s after some messages, and returns its middle."""
+    """A function that renders a note of 2.1 s with some messages, and returns its middle."""
 
-    def render(key: int, messages: Sequence[mido.Message], seed: int, **options: str) -> np.ndarray:
+    def render(
+        key: int,
+        messages: Sequence[mido.Message],
+        seed: int,
+        before: Sequence[mido.Message] = (),
+        part: slice = slice(RATE, 2 * RATE),
+        **options: str,
+    ) -> np.ndarray:
         note = mido.Message("note_on", note=key, velocity=80)
         end = mido.Message("note_off", note=key, time=2016)
-        track = mido.MidiTrack([note, *messages, end])
+        track = mido.MidiTrack([*before, note, *messages, end])
         path = tmp_path / "note.mid"
         mido.MidiFile(tracks=[track]).save(path)
         more = {"phrasing": 0.0, "dry": True, "mono": True, "sample_rate": RATE}
-        return yehu.render(path, seed=seed, **more, **options).sound[RATE : 2 * RATE]
+        return yehu.render(path, seed=seed, **more, **options).sound[part]
 
     return render
 
@@ -99,3 +106,14 @@ def test_a_mapping_keeps_vibrato_on_the_wheel(rendered) -> None:
     widths = [width_cents(rendered(74, wheel(value), 0, **named), 74) for value in (1, 127)]
     assert widths[0] < 4.0
     assert widths[1] > 20.0
+
+
+def test_plucks_follow_the_wheel_and_expression_as_the_bow_does(rendered) -> None:
+    def level(*controls: tuple[int, int]) -> float:
+        plucked = ((67, 127), *controls)
+        before = [mido.Message("control_change", control=c, value=value) for c, value in plucked]
+        return level_db(rendered(74, [], 1, before, slice(RATE // 2)))
+
+    assert 17.0 < level((1, 127)) - level((1, 1)) < 24.0
+    assert level((11, 40)) < level() - 14.0
+    assert level((11, 0)) < level() - 40.0

@@ -229,6 +229,7 @@ def pluck(p: Any, c: Any, side: float) -> None:
         PLUCK_FORCE_N
         * p.value[PRESSURE]
         * p.pressure_variation
+        * requested_dynamics(p)
         * SHAPES[p.gesture.row, PLUCKED_BY]
         / MEDIUM_PRESSURE
     )

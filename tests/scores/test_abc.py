@@ -303,6 +303,27 @@ def test_the_documentation_lists_fields_properties_and_directives():
     assert f"```text {' '.join(name.removeprefix('midi ') for name in of_midi)} ```" in shown
 
 
+def test_hornpipes_and_broken_rhythm_are_played_as_long_as_they_say(read):
+    half, third = Fraction(1, 2), Fraction(1, 3)
+    for head, music, begins in (
+        ("R:hornpipe\nM:4/4", "CD EF|", [0, 2 * third, 1, 5 * third]),
+        ("R:Hornpipes\nM:2/4\nL:1/16", "CD EF|", [0, third, 0.5, 5 * third / 2]),
+        ("R:hornpipe\nM:6/8", "CD EF|", [0, 0.5, 1, 1.5]),
+        ("R:reel\nM:4/4", "CD E>F|", [0, 0.5, 1, 1.75]),
+        (
+            "R:hornpipe\nM:C",
+            "D|C>D E3 F|",
+            [third / 2, half, half + 2 * third, 3 * half, 3 * half + 5 * third],
+        ),
+        ("%%MIDI ratio 5 1", "C>D E<F|", [0, 5 * third / 2, 1, 1 + third / 2]),
+        ("R:hornpipe\n%%MIDI ratio 3 1", "CD|", [0, 0.75]),
+    ):
+        notes = read(f"X:1\nL:1/8\n{head}\nK:C\n{music}").parts[0].notes
+        assert [note.beat for note in notes][: len(begins)] == begins, (head, music)
+    written = read("X:1\nR:hornpipe\nK:C\nC|")
+    assert written.remarks == ("a hornpipe (R:): pairs of even notes are played two to one",)
+
+
 def test_a_repeat_without_a_beginning_goes_back_to_a_double_bar(read):
     for sign in ("||", "|]", "[|"):
         notes = read(f"X:1\nL:1/1\nK:C\nC|D{sign}E|F:|G|").parts[0].notes

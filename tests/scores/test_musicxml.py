@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import zipfile
+from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -136,7 +138,7 @@ def test_each_element_is_played_silent_or_told_and_the_documentation_says_which(
     for kind in kinds:
         assert f"```text {' '.join(sorted(kind))} ```" in page
     style = '<attributes><measure-style><slash type="{}"/></measure-style></attributes>'
-    swing = "<sound><swing><first>2</first><second>1</second></swing></sound>"
+    swing = "<sound><swing><first>0</first><second>1</second></swing></sound>"
     pedal = '<direction><direction-type><pedal type="start"/></direction-type></direction>'
     more = "<sound><swing><straight/></swing></sound><print/><strange><pitch/></strange>"
     bars = (swing + FOUR, style.format("start") + pedal + FOUR, style.format("stop") + FOUR + more)
@@ -160,6 +162,53 @@ def test_a_sign_repeats_the_bars_before(read):
     ]:
         found, right = read(score(*bars)).parts[0].notes, read(score(*played)).parts[0].notes
         assert found == right, bars
+
+
+def test_a_sign_repeats_the_beat_before(read):
+    sign = '<measure-style{}><beat-repeat type="{}">{}</beat-repeat></measure-style>'
+    sign = f"<attributes>{sign}</attributes>"
+    one, stop = sign.format("", "start", ""), sign.format("", "stop", "")
+    beat, rest, last = note("F4", 0.5) + note("G4", 0.5), note("r", 1), note("G4", 4)
+    start = attributes() + beat
+    half = sign.format("", "start", "<slash-type>half</slash-type>")
+    for bars, played in [
+        ([start + one + rest * 3, stop + last], [beat * 4, last]),
+        ([start + one + rest * 2 + stop + note("A4", 1)], [beat * 3 + note("A4", 1)]),
+        ([beat * 4, one + rest * 4, stop + rest * 4], [beat * 4, beat * 4, note("r", 4)]),
+        ([start + one + beat * 3], [beat * 4]),  # its notes are there
+        ([start + note("A4", 1) + half + note("r", 2)], [(beat + note("A4", 1)) * 2]),
+        ([attributes() + one + note("r", 4), last], [note("r", 4), last]),
+    ]:
+        found, right = read(score(*bars)), read(score(*played))
+        assert found.parts[0].notes == right.parts[0].notes, bars
+        assert not found.unknown
+
+
+def test_swing_delays_what_begins_on_off_beats(read):
+    def swing(*values, unit=""):
+        names = zip(("first", "second", "swing-type"), (*values, *filter(None, [unit])))
+        said = "".join(f"<{name}>{value}</{name}>" for name, value in names)
+        return f"<sound><swing>{said or '<straight/>'}</swing></sound>"
+
+    eighths = note("F4", 0.5) + note("G4", 0.5)
+    third = Fraction(1, 3)
+    for bars, begins in [
+        ([swing(2, 1) + eighths + note("A4", 3)], [0, 2 * third, 1]),
+        ([swing(3, 2) + note("F4", 1.5) + note("G4", 2.5)], [0, Fraction(8, 5)]),
+        ([swing(2, 1) + note("r", 0.5) + note("F4", 1) + note("G4", 0.5)], [2 * third, 5 * third]),
+        ([swing(2, 1) + note("F4", 0.5) + note("G4", 0.25) * 2], [0, 0.5, 0.75]),
+        ([swing(2, 1) + note("F4", 0.25) * 2 + note("G4", 0.5)], [0, 0.25, 0.5]),
+        ([swing(2, 1, unit="16th") + note("F4", 0.25) * 2 + eighths], [0, third / 2 * 2, 0.5, 1]),
+        ([swing(2, 1) + eighths + swing() + eighths, eighths], [0, 2 * third, 1, 1.5, 2, 2.5]),
+        ([swing(2, 1) + note("F4", 0.5), note("G4", 4)], [third / 2, 0.5]),  # an upbeat
+        ([swing(2, 1) + note("F4", 0.5) + grace("C5") + note("G4", 0.5)], [0, 2 * third]),
+        ([swing(1, 3) + eighths], [0, 0.25]),
+    ]:
+        written = read(score(*bars))
+        notes = written.parts[0].notes
+        assert [n.beat for n in notes] == begins, bars
+        assert all(a.end <= b.beat for a, b in pairwise(notes))
+        assert not written.unknown
 
 
 def test_a_tie_may_go_on_in_another_voice(read):

@@ -17,16 +17,18 @@ from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores.abc.fields import metre_of, order_of_parts
 from yehu_server.scores.abc.keys import properties_of
 from yehu_server.scores.abc.vocabulary import DIRECTIVES, FIELDS, LEFT_OUT, SHORTCUTS
-from yehu_server.scores.abc.voice import SPREADS, VoiceReader
+from yehu_server.scores.abc.voice import VoiceReader
 from yehu_server.scores.encodings import decoded, encoding_of
 from yehu_server.scores.score import errors_name, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_PARTS, Written
 
 MAX_BYTES = 4 << 20
-MUSIC_FIELDS = "KLMQ"
+MUSIC_FIELDS = "KLMQR"
+SETTINGS = ("propagate-accidentals", "ratio")  # directives that change how music is read
 _FIELD = re.compile(r"([A-Za-z+]):(?![|:])\s*(.*)")  # C:| is a note at the end of a repeat
 _BLOCK = re.compile(r"%%\s*(begin|end)([a-z]\w*)")
+HORNPIPE = "a hornpipe (R:): pairs of even notes are played two to one"
 NAMES = {"m": "macros (m:)", "s": "lines of symbols (s:)"}  # of fields that are left out
 
 
@@ -46,7 +48,7 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
         written = _Tune().read([*head, *tunes[number - 1]])
         if len(tunes) > 1 and song is None:
             line = f"tune 1 of {len(tunes)}; --song N takes another"
-            written = replace(written, remarks=(line,))
+            written = replace(written, remarks=(line, *written.remarks))
         return written
 
 
@@ -101,7 +103,6 @@ class _Tune:
         self._defaults: list[tuple[str, str]] = []  # fields of the head
         # What fields of voices say of where notes sound, in the order in which they are named.
         self._properties: dict[str, dict[str, int]] = {}
-        self._spread = SPREADS[0]
         self._order = ""
         self._labels: list[tuple[str, int]] = []
         self._title = ""
@@ -131,7 +132,9 @@ class _Tune:
         if not parts:
             raise ScoreError("has no notes of ABC")
         sections = self._sections(max(len(bars) for _, bars in parts))
-        return assembled(parts, self._title, self._unknown, self._warnings, sections)
+        written = assembled(parts, self._title, self._unknown, self._warnings, sections)
+        swings = any(voice.is_hornpipe for voice in self._voices.values())
+        return replace(written, remarks=(HORNPIPE,)) if swings else written
 
     def _reader(self) -> VoiceReader:
         return self._now or self._voice("1")
@@ -141,11 +144,10 @@ class _Tune:
             if len(self._voices) >= MAX_PARTS:
                 raise ScoreError(f"has more than {MAX_PARTS} voices")
             voice = VoiceReader(self._unknown, self._warnings, self._shortcuts)
-            voice.spread = self._spread
             metre = next((metre_of(text) for key, text in self._defaults[::-1] if key == "M"), None)
             if metre is not None and metre < 3:
                 voice.unit = Fraction(1, 4)
-            for key in "LMKQ":
+            for key in [*"LMKQR", *SETTINGS]:
                 for letter, text in self._defaults:
                     if letter == key and (key != "Q" or not self._voices):
                         voice.field(letter, text)
@@ -179,13 +181,15 @@ class _Tune:
     def _directive(self, text: str) -> None:
         """Take a directive (11), of a line of its own or of an I: field."""
         name, value = [*text.strip().split(maxsplit=1), "", ""][:2]
+        setting = name
         if name.lower() == "midi":
             name = f"MIDI {value.partition(' ')[0]}"
-        if name == "propagate-accidentals" and value in SPREADS:
+            setting, value = [*value.split(maxsplit=1), "", ""][:2]
+        if setting in SETTINGS:
             if self._in_music:
-                self._reader().spread = value
+                self._reader().field(setting, value)
             else:
-                self._spread = value
+                self._defaults.append((setting, value))
         elif name[:1].isalpha() and re.sub(r"-?\d+$", "", name.lower()) not in DIRECTIVES:
             self._unknown[one_line(f"%%{name}"[:40])] += 1
 

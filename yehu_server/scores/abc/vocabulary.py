@@ -12,8 +12,8 @@ from collections.abc import Mapping
 
 PLAYED, SILENT, LEFT_OUT = "played", "silent", "left out"
 FIELDS: Mapping[str, str] = {
-    **dict.fromkeys("IKLMPQTUVX", PLAYED),
-    **dict.fromkeys("ABCDEFGHNORSWZrw+", SILENT),
+    **dict.fromkeys("IKLMPQRTUVX", PLAYED),
+    **dict.fromkeys("ABCDEFGHNOSWZrw+", SILENT),
     **dict.fromkeys("ms", LEFT_OUT),
 }
 # Of V: and K:, those that change where notes sound or how a part is named, and those that do not.
@@ -62,6 +62,7 @@ noportamento portamento program randomchordattack stressmodel trim voice vol vol
 """
 DIRECTIVES: Mapping[str, str] = {
     "propagate-accidentals": PLAYED,
+    "midi ratio": PLAYED,
     **dict.fromkeys(_OF_THE_PAGE.split(), SILENT),
     **{f"midi {name}": SILENT for name in _OF_MIDI.split()},
 }

@@ -15,11 +15,13 @@ from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
 from yehu_server.scores.written.repeats import MAX_BARS, MAX_TIMES, BarLines
+from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
 from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
 MIDDLE_C = 60.0
 SPREADS = ("pitch", "octave", "not")  # how far an accidental reaches in its bar (11.3)
+SWUNG = {"4/4": Fraction(1, 2), "C": Fraction(1, 2), "2/4": Fraction(1, 4)}  # of hornpipes
 TIMES = {2: 3, 3: 2, 4: 3, 6: 2, 8: 3}  # of tuplets; others depend on the metre
 LONGEST = 64  # quarters of a note
 MAX_BARS_REST = 1000
@@ -71,7 +73,11 @@ class VoiceReader:
         self._alters = dict.fromkeys(LETTERS, 0.0)
         self._fifths = 0
         self._properties = {"clef": 0, "octave": 0, "transpose": 0}
-        self.spread = SPREADS[0]
+        self._spread = SPREADS[0]
+        self._ratio = (3, 1)  # of broken rhythm
+        self.is_hornpipe = False
+        self._before = Fraction(0)  # the length of the last bar
+        self._swing_unit: Fraction | None = SWUNG["C"]
         self._metre: Fraction | None = Fraction(4)
         self._odd_times = 2  # of tuplets of 5, 7 and 9: 3 in compound time
         self._place = ("C", 0, 0.0)  # of the last note: letter, octave, accidental
@@ -118,8 +124,16 @@ class VoiceReader:
             self._metre = fields.metre_of(value)
             self._bar.metre = self._metre
             self._odd_times = 3 if value.strip() in ("6/8", "9/8", "12/8") else 2
+            self._swing_unit = SWUNG.get(value.strip())
         elif letter == "L":
             self.unit = fields.length_of(value) or self.unit
+        elif letter == "R":
+            self.is_hornpipe = value.lower().startswith("hornpipe")
+            self._ratio = (2, 1) if self.is_hornpipe else (3, 1)
+        elif letter == "propagate-accidentals":
+            self._spread = value if value in SPREADS else self._spread
+        elif letter == "ratio" and (found := re.fullmatch(r"([1-9]\d?)\s+([1-9]\d?)", value)):
+            self._ratio = int(found[1]), int(found[2])
         elif letter == "Q":
             tempo = fields.tempo_of(value, self.unit)
             if tempo is not None:
@@ -189,10 +203,10 @@ class VoiceReader:
     ) -> tuple[float, Fraction]:
         name = letter.upper()
         octave = letter.islower() + octaves.count("'") - octaves.count(",")
-        reached = name if self.spread == "pitch" else (name, octave)
+        reached = name if self._spread == "pitch" else (name, octave)
         if sign:
             alter = ALTERS[sign]
-            if self.spread != "not":
+            if self._spread != "not":
                 self._in_bar[reached] = alter
         elif (name, octave) in self._tied and reached not in self._in_bar:
             alter = self._tied[name, octave]
@@ -272,6 +286,8 @@ class VoiceReader:
         if self._at <= self._last_begin:  # nothing before it in this bar
             return
         short = Fraction(1, 2 ** min(len(signs), 4))
+        if len(signs) == 1:
+            short = Fraction(2 * self._ratio[1], sum(self._ratio))
         first, self._next_factor = (2 - short, short) if signs[0] == ">" else (short, 2 - short)
         length = (self._at - self._last_begin) * first
         for note in self._last:
@@ -353,6 +369,10 @@ class VoiceReader:
         bar = self._bar
         if self._at > 0 or bar.notes:
             bar.length = self._at
+            if self.is_hornpipe and self._swing_unit and self._metre:
+                begin = begin_of_beats(bar.length, self._before, self._metre)
+                swing_notes(bar.notes, Swing(self._swing_unit, *self._ratio), begin)
+            self._before = bar.length
             bar.number = str(len(self.bars) + 1)
             self.bars.append(bar)
             if len(self.bars) > MAX_BARS:

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import replace
 from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
 from yehu_server.scores.musicxml.marks import VALUES, NoteMarks, neighbour, number
+from yehu_server.scores.musicxml.repeat_signs import RepeatSigns
 from yehu_server.scores.musicxml.vocabulary import tell
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import SEMITONES
 from yehu_server.scores.written.notated import MAX_BEATS, MAX_NOTES
 from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
+from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
 from yehu_server.scores.written.voices import FINEST, RawBar, RawDirection, RawNote
 
 MAX_DIVISIONS = 1 << 20  # of a quarter note
 LOWEST, HIGHEST = 0.0, 127.0  # MIDI notes
 _NUMBERS = re.compile(r"\d+")
-MAX_REPEATED = 8  # bars that a sign repeats
+SWUNG = ("eighth", "16th")
 
 
 class BarReader:
@@ -36,6 +37,7 @@ class BarReader:
         self._fifths = 0
         self._transposed = 0.0  # semitones
         self._metre = Fraction(4)
+        self._beat = Fraction(1)
         self._ending: frozenset[int] = frozenset()  # that is open
         self._last_ending = (0, -1)  # the highest number of the last one, and its last bar
         self._bars = 0
@@ -44,8 +46,10 @@ class BarReader:
         self._graces: list[RawNote] = []  # grace notes before their note
         self._at = Fraction(0)
         self._bar = RawBar("", BarLines())
-        self._before: list[RawBar] = []  # the last bars
-        self._repeated: dict[str, int] = {}  # by staff, how many bars each of these repeats
+        self._signs = RepeatSigns()
+        self._swing: Swing | None = None
+        self._swings: list[tuple[Fraction, Swing | None]] = []  # of this bar, and from where
+        self._last_length = Fraction(0)  # of the bar before
 
     def read(self, measure: Element) -> RawBar:
         """Read one <measure>. Raises ScoreError where it is longer, or fuller, than any music."""
@@ -57,6 +61,7 @@ class BarReader:
         self._at = Fraction(0)
         self._head = None
         self._graces = []
+        self._swings = [(Fraction(0), self._swing)]
         directions = DirectionReader(bar.directions, lines.jumps, self._unknown)
         for child in measure:
             if child.tag == "note":
@@ -69,8 +74,11 @@ class BarReader:
                 bar.length = max(bar.length, self._at)
             elif child.tag == "direction":
                 directions.read(child, self._at, self._offset(child))
+                for sound in child.iterfind("sound"):
+                    self._read_swing(sound)
             elif child.tag == "sound":
                 directions.sound(child, self._at)
+                self._read_swing(child)
             elif child.tag == "barline":
                 self._barline(child)
             elif child.tag in ("harmony", "figured-bass"):
@@ -80,25 +88,33 @@ class BarReader:
             if self._at > MAX_BEATS:
                 raise ScoreError(f"has a bar longer than {MAX_BEATS} quarters")
         tell(measure, bar.number, self._unknown)
-        self._repeat_bars()
-        self._before = [*self._before[1 - MAX_REPEATED :], bar]
+        self._count(self._signs.fill(bar))
+        self._swing_notes()
         if not bar.notes:  # rests may be longer than their bar, where they fill it
             bar.length = min(bar.length, self._metre) or self._metre
         return bar
 
-    def _repeat_bars(self) -> None:
-        """Fill a bar that a sign (`measure-repeat`) leaves empty with one before."""
+    def _swing_notes(self) -> None:
+        """Play pairs of notes as <swing> says, from where it says it."""
         bar = self._bar
-        for staff, count in self._repeated.items():
-            if count > len(self._before) or any(staff in ("", n.voice[0]) for n in bar.notes):
-                continue
-            source = self._before[-count]
-            copied = [each for each in source.notes if staff in ("", each.voice[0])]
-            bar.notes += [
-                replace(n, marks=[*n.marks], ties={*n.ties}, ends=[*n.ends]) for n in copied
-            ]
-            bar.length = max(bar.length, source.length)
-            self._count(len(copied))
+        begin = begin_of_beats(bar.length, self._last_length, self._metre)
+        ends = [at for at, _ in self._swings[1:]]
+        for (at, swing), end in zip(self._swings, [*ends, None], strict=True):
+            if swing is not None:
+                notes = [n for n in bar.notes if n.at >= at and (end is None or n.at < end)]
+                swing_notes(notes, swing, begin)
+        self._last_length = bar.length
+
+    def _read_swing(self, sound: Element) -> None:
+        for swing in sound.iterfind("swing"):
+            first, second = (int(number(swing.findtext(name))) for name in ("first", "second"))
+            unit = (swing.findtext("swing-type") or "eighth").strip()
+            is_even = swing.find("straight") is not None
+            if not is_even and not (0 < first < 100 and 0 < second < 100 and unit in SWUNG):
+                self._unknown[f"swing (bar {self._bar.number})"] += 1
+            else:
+                self._swing = None if is_even else Swing(VALUES[unit], first, second)
+                self._swings.append((self._at, self._swing))
 
     def _count(self, notes: int) -> None:
         self._notes += notes
@@ -131,7 +147,7 @@ class BarReader:
             elif child.tag == "time":
                 self._time(child)
             elif child.tag == "measure-style":
-                self._style(child)
+                self._signs.read(child, self._at, self._beat)
             elif child.tag == "transpose":
                 semitones = number(child.findtext("chromatic"))
                 self._transposed = semitones + 12.0 * number(child.findtext("octave-change"))
@@ -139,14 +155,6 @@ class BarReader:
             # Of the key that sounds, which a transposing part does not write.
             fifths = self._fifths + 7 * int(self._transposed)
             self._bar.fifths = nearest_key(fifths) if self._transposed else fifths
-
-    def _style(self, style: Element) -> None:
-        staff = style.get("number", "")[:8]
-        for sign in style.iterfind("measure-repeat"):
-            self._repeated.pop(staff, None)
-            count = int(number(sign.text, 1.0))
-            if sign.get("type") == "start" and 0 < count <= MAX_REPEATED:
-                self._repeated[staff] = count
 
     def _time(self, time: Element) -> None:
         quarters = Fraction(0)
@@ -157,6 +165,8 @@ class BarReader:
                 quarters += Fraction(4 * count, kind)
         if 0 < quarters <= 1000:
             self._metre = self._bar.metre = quarters
+            count, unit = quarters * kind / 4, Fraction(4, kind)
+            self._beat = 3 * unit if count > 3 and count % 3 == 0 and kind >= 8 else unit
 
     def _barline(self, barline: Element) -> None:
         lines = self._bar.lines

@@ -1,0 +1,58 @@
+"""Play even notes unevenly: swing of MusicXML, hornpipes of ABC."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from yehu_server.scores.written.voices import RawNote
+
+
+@dataclass(frozen=True)
+class Swing:
+    """How pairs of notes are played that are written even."""
+
+    unit: Fraction  # quarters of each as written
+    first: int  # the first lasts so long
+    second: int  # beside the second
+
+    @property
+    def delay(self) -> Fraction:
+        """Quarters by which the second is late."""
+        return self.unit * (self.first - self.second) / (self.first + self.second)
+
+
+def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Fraction = Fraction(0)) -> None:
+    """Delay what begins on an off-beat, and let the note before it last up to there.
+
+    Beats are counted from `begin`. What is shorter than a unit, or follows such a note, stays even:
+    the beat is divided otherwise there. So does MuseScore, and abcjs where it is asked to swing.
+    """
+    voices: dict[tuple[str, str], list[RawNote]] = {}
+    for note in notes:
+        voices.setdefault(note.voice, []).append(note)
+    for voice in voices.values():
+        before: RawNote | None = None
+        small: list[RawNote] = []
+        for note in sorted(voice, key=lambda each: (each.at, not each.is_grace)):
+            if note.is_grace:
+                small.append(note)
+                continue
+            at, unit, delay = note.at, swing.unit, swing.delay
+            is_off = (at - begin) % (2 * unit) == unit and note.length >= unit
+            if is_off and (before is None or before.at <= at - unit):
+                if before is not None and before.at + before.length == at:
+                    before.length += delay
+                for each in small:
+                    each.at += delay if each.at == at else 0
+                note.at, note.length = at + delay, note.length - delay
+            before, small = note, []
+
+
+def begin_of_beats(length: Fraction, before: Fraction, metre: Fraction) -> Fraction:
+    """Where the beats of a bar of a length begin, in quarters since it does itself.
+
+    An upbeat, which follows no whole bar, is counted from its end.
+    """
+    return length - metre if length < metre and before < metre else Fraction(0)

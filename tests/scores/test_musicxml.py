@@ -186,7 +186,9 @@ def test_a_sign_repeats_the_beat_before(read):
 
 def test_swing_delays_what_begins_on_off_beats(read):
     def swing(*values, unit=""):
-        names = zip(("first", "second", "swing-type"), (*values, *filter(None, [unit])))
+        names = zip(
+            ("first", "second", "swing-type"), (*values, *filter(None, [unit])), strict=False
+        )
         said = "".join(f"<{name}>{value}</{name}>" for name, value in names)
         return f"<sound><swing>{said or '<straight/>'}</swing></sound>"
 

@@ -371,7 +371,7 @@ class VoiceReader:
             bar.length = self._at
             if self.is_hornpipe and self._swing_unit and self._metre:
                 begin = begin_of_beats(bar.length, self._before, self._metre)
-                swing_notes(bar.notes, Swing(self._swing_unit, *self._ratio), begin)
+                swing_notes(bar.notes, Swing(self._swing_unit, *self._ratio, True), begin)
             self._before = bar.length
             bar.number = str(len(self.bars) + 1)
             self.bars.append(bar)

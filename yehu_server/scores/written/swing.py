@@ -16,6 +16,7 @@ class Swing:
     unit: Fraction  # quarters of each as written
     first: int  # the first lasts so long
     second: int  # beside the second
+    is_of_pairs: bool = False  # whether only two notes of one unit each are played so
 
     @property
     def delay(self) -> Fraction:
@@ -27,7 +28,8 @@ def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Fraction = Fracti
     """Delay what begins on an off-beat, and let the note before it last up to there.
 
     Beats are counted from `begin`. What is shorter than a unit, or follows such a note, stays even:
-    the beat is divided otherwise there. So does MuseScore, and abcjs where it is asked to swing.
+    the beat is divided otherwise there. So does MuseScore, and abcjs where it is asked to swing;
+    abc2midi, in hornpipes, asks for pairs.
     """
     voices: dict[tuple[str, str], list[RawNote]] = {}
     for note in notes:
@@ -41,6 +43,9 @@ def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Fraction = Fracti
                 continue
             at, unit, delay = note.at, swing.unit, swing.delay
             is_off = (at - begin) % (2 * unit) == unit and note.length >= unit
+            is_pair = before is not None and before.at + unit == at and before.length == unit
+            if swing.is_of_pairs:
+                is_off &= is_pair and note.length == unit
             if is_off and (before is None or before.at <= at - unit):
                 if before is not None and before.at + before.length == at:
                     before.length += delay

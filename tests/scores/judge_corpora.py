@@ -21,8 +21,10 @@ import subprocess
 import sys
 import tempfile
 import warnings
+import zipfile
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import mido
 
@@ -66,22 +68,49 @@ def abc2midi(text: str) -> Notes:
         return of_midi(mido.MidiFile(Path(folder, "tune.mid")), 0.04)
 
 
+def plain(path: str) -> str:
+    """A file of MusicXML without what readers play each in its own way, or not: small notes."""
+    data = Path(path).read_bytes()
+    if data.startswith(b"PK"):
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            names = [name for name in archive.namelist() if not name.startswith(("META", "__"))]
+            data = archive.read(next(each for each in names if each.endswith("xml")))
+    root = ElementTree.fromstring(data)
+    for parent in [*root.iter()]:
+        for child in [*parent]:
+            if child.tag == "ornaments" or (child.tag == "note" and _find(child, "grace")):
+                parent.remove(child)
+            elif child.tag == "note" and (_find(child, "cue") or _find(child, "unpitched")):
+                for inner in [*child]:
+                    if inner.tag in ("cue", "pitch", "unpitched", "tie", "notations"):
+                        child.remove(inner)
+                if not _find(child, "chord"):
+                    child.insert(0, ElementTree.Element("rest"))
+                else:
+                    parent.remove(child)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _find(element: ElementTree.Element, name: str) -> bool:
+    return element.find(name) is not None
+
+
 def verovio(path: str) -> Notes:
-    import verovio  # noqa: PLC0415 - it may be absent
+    import verovio
 
     verovio.enableLog(verovio.LOG_OFF)
     toolkit = verovio.toolkit()
-    if not toolkit.loadFile(path):
+    if not toolkit.loadData(plain(path)):
         raise ValueError(path)
     data = base64.b64decode(toolkit.renderToMIDI())
     return of_midi(mido.MidiFile(file=io.BytesIO(data)))
 
 
 def music21(path: str) -> Notes:
-    import music21  # noqa: PLC0415
+    import music21
 
     warnings.simplefilter("ignore")
-    parsed: Any = music21.converter.parse(path, forceSource=True)
+    parsed: Any = music21.converter.parse(plain(path), format="musicxml")
     found = []
     for part in parsed.toSoundingPitch().parts:
         for each in part.expandRepeats().stripTies().flatten().notes:
@@ -93,7 +122,7 @@ def music21(path: str) -> Notes:
 
 def abcjs(texts: list[str]) -> list[Notes | None]:
     said = json.dumps([ORNAMENTS.sub("", text) for text in texts])
-    made = subprocess.run(  # noqa: S603
+    made = subprocess.run(
         [shutil.which("node") or "node", "-e", ABCJS],
         input=said.encode(), capture_output=True, check=True, timeout=600,
     )  # fmt: skip
@@ -117,7 +146,7 @@ def is_there(name: str) -> bool:
     else:
         command = [sys.executable, "-c", f"import {name}"]
     with contextlib.suppress(OSError):
-        return subprocess.run(command, capture_output=True, check=False).returncode == 0  # noqa: S603
+        return subprocess.run(command, capture_output=True, check=False).returncode == 0
     return False
 
 

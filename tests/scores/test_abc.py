@@ -313,7 +313,7 @@ def test_hornpipes_and_broken_rhythm_are_played_as_long_as_they_say(read):
         (
             "R:hornpipe\nM:C",
             "D|C>DE3 F|",
-            [0, half, half + 4 * third, half + 2, 4],
+            [0, half, half + 2 * third, 3 * half, 3],
         ),
         ("%%MIDI ratio 5 1", "C>D E<F|", [0, 5 * third / 2, 1, 1 + third / 2]),
         ("R:hornpipe\n%%MIDI ratio 3 1", "CD|", [0, 0.75]),

@@ -56,11 +56,15 @@ def scores_of(corpus: Path) -> list[tuple[str, Path, str]]:
 def played_by(name: str, files: list[str]) -> list[Notes | None] | None:
     """What a reader plays of each file; None where it is not there."""
     command = [PYTHON, str(JUDGE), name]
-    if subprocess.run(command, check=False, stdin=subprocess.DEVNULL).returncode:  # noqa: S603
+    if subprocess.run(command, check=False, stdin=subprocess.DEVNULL).returncode:
         return None
     said = json.dumps(files).encode()
-    made = subprocess.run(command, check=True, input=said, stdout=subprocess.PIPE)  # noqa: S603
-    return [notes and [tuple(note) for note in notes] for note in [0] for notes in json.loads(made.stdout)]
+    made = subprocess.run(command, check=True, input=said, stdout=subprocess.PIPE)
+    return [
+        notes and [tuple(note) for note in notes]
+        for note in [0]
+        for notes in json.loads(made.stdout)
+    ]
 
 
 def notes_of(written: Written) -> Notes:
@@ -97,14 +101,17 @@ def test_scores_of_others_are_read_as_two_readers_agree(subtests, tmp_path):
                 continue
             ours: list[Notes | str] = []
             for _, path, text in own:
-                if text:
-                    path = tmp_path / "tune.abc"
-                    path.write_text(text, encoding="utf-8")
                 try:
-                    ours.append(notes_of(read_abc(path) if text else read_musicxml(path)))
+                    if text:
+                        (tmp_path / "tune.abc").write_text(text, encoding="utf-8")
+                        ours.append(notes_of(read_abc(tmp_path / "tune.abc")))
+                    else:
+                        ours.append(notes_of(read_musicxml(path)))
                 except ScoreError as error:
                     ours.append(str(error))
-            others = [played_by(name, [text or str(path) for _, path, text in own]) for name in names]
+            others = [
+                played_by(name, [text or str(path) for _, path, text in own]) for name in names
+            ]
             if any(each is None for each in others):
                 pytest.skip(f"{' and '.join(names)} are not both there")
             differ = []
@@ -112,7 +119,10 @@ def test_scores_of_others_are_read_as_two_readers_agree(subtests, tmp_path):
             for (name, *_), mine, *two in zip(own, ours, *others, strict=True):
                 one, other = two
                 both = one is not None and other is not None and agree(one, other)
-                same = [their is not None and not isinstance(mine, str) and agree(mine, their) for their in two]
+                same = [
+                    their is not None and not isinstance(mine, str) and agree(mine, their)
+                    for their in two
+                ]
                 for reader, is_same in zip(names, same, strict=True):
                     table[f"as {reader}"] += is_same
                 table["as neither"] += not any(same)

@@ -165,8 +165,9 @@ class BarReader:
                 quarters += Fraction(4 * count, kind)
         if 0 < quarters <= 1000:
             self._metre = self._bar.metre = quarters
-            count, unit = quarters * kind / 4, Fraction(4, kind)
-            self._beat = 3 * unit if count > 3 and count % 3 == 0 and kind >= 8 else unit
+            self._beat = Fraction(4, kind)
+            if kind >= 8 and quarters > 3 * self._beat and quarters % (3 * self._beat) == 0:
+                self._beat *= 3
 
     def _barline(self, barline: Element) -> None:
         lines = self._bar.lines

@@ -29,7 +29,7 @@ class Loudness:
         signs = [s for s in part.signs if s.name in LEVELS or s.name == "velocity"]
         hairpins = [s for s in part.spans if s.name in HAIRPINS and s.end > s.begin]
         forced = [sign.beat for sign in part.signs if sign.name in FORCED]
-        accents = any(note.marked(name) for note in part.notes for name in ACCENTS)
+        accents = any(mark.name in ACCENTS for note in part.notes for mark in note.marks)
         self.is_marked = bool(signs or hairpins or forced or accents)
         self._forced = _first_notes(part, [sign for sign in part.signs if sign.name in FORCED])
         # Loudness at breakpoints, joined by straight lines; at a jump the same beat stands twice.
@@ -98,7 +98,9 @@ class Loudness:
 
     def _range(self, note: Note) -> tuple[float, float]:
         """The least and the largest loudness while a note sounds."""
-        begin, end = float(note.beat), float(note.end)
+        if not self._beats:
+            return DEFAULT, DEFAULT
+        begin, end = note.begins_at, note.ends_at
         first, last = bisect_right(self._beats, begin), bisect_left(self._beats, end)
         levels = [self.at(begin), *self._levels[first:last], self._before(end)]
         return min(levels), max(levels)
@@ -106,10 +108,11 @@ class Loudness:
     def velocity(self, note: Note) -> int:
         """The velocity of a note: its loudest moment."""
         loudest = self._range(note)[1]
-        name = self._forced.get(note.beat)
+        name = self._forced.get(note.beat) if self._forced else None
         if name is not None:
             loudest = max(float(DYNAMICS[FORCED[name][0]]), loudest + FORCED_BY)
-        loudest += sum(by for mark, by in ACCENTS.items() if note.marked(mark))
+        if note.marks:
+            loudest += sum(by for mark, by in ACCENTS.items() if note.marked(mark))
         return round(min(max(loudest, SOFTEST), LOUDEST))
 
     def below_db(self, note: Note, beats: Sequence[float]) -> list[float]:

@@ -20,6 +20,9 @@ MOVED = "moved to fit"  # begins a line of moves
 
 def default_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
     """The number, from 0, of the part that plays where none is asked for, if any has notes."""
+    sounding = [number for number, part in enumerate(written.parts) if part.notes]
+    if len(sounding) < 2:
+        return sounding
     parts = [[span_of(note, within) for note in part.notes] for part in written.parts]
     tune = melodic_part(written.names, parts, within)
     return [] if tune is None else [tune]
@@ -61,12 +64,17 @@ def line_of(moves: Sequence[tuple[str, Octaves]], within: NoteRange = YEHU) -> s
 def span_of(note: Note, within: NoteRange = YEHU) -> NoteSpan:
     """The time of a note (quarters), and its pitches."""
     # A harmonic is as high as it is written: its finger touches an open string.
+    if not (note.marks or note.before or note.after):
+        return NoteSpan(note.begins_at, note.ends_at, (note.pitch,))
     graces = [grace.pitch for grace in (*note.before, *note.after)]
     own = [] if harmonic_of(note, within) is not None else [note.pitch]
-    return NoteSpan(float(note.beat), float(note.end), tuple(own + graces))
+    return NoteSpan(note.begins_at, note.ends_at, tuple(own + graces))
 
 
 def _moved(note: Note, by: float) -> Note:
+    if not (note.before or note.after):
+        return note.at_pitch(note.pitch + by)
+
     def small(graces: tuple[Grace, ...]) -> tuple[Grace, ...]:
         return tuple(replace(grace, pitch=grace.pitch + by) for grace in graces)
 

@@ -124,16 +124,17 @@ def actives_of(part: Part) -> list[Active]:
     """The signs that hold at each note of a part; some are written for one note alone."""
     signs, now, found = sorted(part.signs, key=lambda sign: sign.beat)[::-1], Active(), []
     for note in part.notes:
+        if now.gesture or now.is_forced or (signs and signs[-1].beat <= note.beat):
+            now = replace(now, gesture=0.0, is_forced=False)
         while signs and signs[-1].beat <= note.beat:
             now.take(signs.pop())
         found.append(now)
-        now = replace(now, gesture=0.0, is_forced=False)
     return found
 
 
 def harmonic_of(note: Note, within: NoteRange = YEHU) -> Node | None:
     """The node of a note's harmonic; None where it is no harmonic, or one that does not speak."""
-    if note.marked("harmonic") is None:
+    if not note.marks or note.marked("harmonic") is None:
         return None
     known = harmonics_of(within)
     near = min(known, key=lambda pitch: abs(pitch - note.pitch))
@@ -142,12 +143,16 @@ def harmonic_of(note: Note, within: NoteRange = YEHU) -> Node | None:
 
 def is_plucked(note: Note, active: Active) -> bool:
     """Whether a note is plucked."""
+    if not note.marks:
+        return active.plucked
     return active.plucked or bool(note.marked("pizzicato") or note.marked("snap-pizzicato"))
 
 
 def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = YEHU) -> Values:
     """Return the parameters that a note's marks and the signs before it set, by address."""
     values = _held(active)
+    if not (note.marks or values or active.plucked or articulation_of(note, active, quarter_s)):
+        return {}
     if number := articulation_of(note, active, quarter_s):
         values[ARTICULATION] = number
     for mark in note.marks:
@@ -190,11 +195,12 @@ def _held(active: Active) -> Values:
 
 def articulation_of(note: Note, active: Active, quarter_s: float) -> float:
     """The articulation that is written for a note, by its number; 0 for none."""
+    if not note.marks and not active.is_forced:
+        return active.gesture or active.articulation
     length_s = float(note.length) * quarter_s
-    if slide := slide_of(note):
-        return slide
-    if mark := note.marked("articulation"):
-        return mark.value or 0.0
+    mark = note.marked("articulation")
+    if (slide := slide_of(note)) or mark:
+        return slide or (mark.value if mark else None) or 0.0
     for name, (gesture, least_s) in GESTURES.items():
         if note.marked(name) and length_s >= least_s:
             return float(NUMBER[gesture])
@@ -208,6 +214,8 @@ def articulation_of(note: Note, active: Active, quarter_s: float) -> float:
 
 def slide_of(note: Note) -> float:
     """The articulation of a written slide into a note, by its number; 0 for none."""
+    if not note.marks:
+        return 0.0
     return next((float(NUMBER[name]) for mark, name in SLIDES.items() if note.marked(mark)), 0.0)
 
 

@@ -11,7 +11,6 @@ from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
 
 from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 
@@ -161,11 +160,23 @@ class Note:
     # How the pitch moves within the note: points of a share of its length, 0 to 1 and ascending,
     # and of semitones from `pitch`, joined by straight lines. Empty: it stays.
     contour: tuple[tuple[float, float], ...] = ()
+    # The beat at which it ends; and as floats, which are had often, where both are.
+    end: Fraction = field(init=False, repr=False, compare=False)
+    begins_at: float = field(init=False, repr=False, compare=False)
+    ends_at: float = field(init=False, repr=False, compare=False)
 
-    @cached_property
-    def end(self) -> Fraction:
-        """The beat at which it ends."""
-        return self.beat + self.length
+    def __post_init__(self) -> None:
+        end = self.beat + self.length
+        put = object.__setattr__
+        put(self, "end", end)
+        put(self, "begins_at", self.beat.numerator / self.beat.denominator)
+        put(self, "ends_at", end.numerator / end.denominator)
+
+    def at_pitch(self, pitch: float) -> Note:
+        """The same note at another pitch; its beats are not worked out again."""
+        moved = object.__new__(Note)
+        vars(moved).update(vars(self), pitch=pitch)
+        return moved
 
     def marked(self, name: str) -> Mark | None:
         """The mark of a name, if it has one."""

@@ -46,6 +46,8 @@ def touches_of(note: Note, begin_s: float, end_s: float, trill: float | None) ->
 
     `trill` is the semitones to the other note of a trill that goes on from before, if one does.
     """
+    if not (note.marks or note.before or note.after or trill):
+        return [Touch(begin_s, end_s, note.pitch)]
     length_s = end_s - begin_s
     before = _graces(note.before, begin_s, length_s)
     after = _graces(note.after, end_s, length_s, backwards=True)
@@ -126,7 +128,7 @@ def _trill(held: Touch, step: float) -> list[Touch]:
 def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:
     """The semitones from a note's pitch at seconds, from its beginning on; empty where it stays."""
     length_s = end_s - begin_s
-    if length_s <= LAST_S:
+    if length_s <= LAST_S or not (note.marks or note.contour):
         return []
     points = [(begin_s + share * length_s, bend) for share, bend in note.contour]
     points = points or _slide_away(note, begin_s, end_s)

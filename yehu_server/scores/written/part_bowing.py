@@ -64,12 +64,12 @@ def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Pl
         end_s = _sounding_end(note, active, clock, slurs.over(note) is not None)
         at = bisect_right(breaths, note.beat)
         if at < len(breaths) and breaths[at] <= note.end:
-            end_s = _breathe(clock.seconds(note.beat), end_s)
-        if note.end in silences:
-            end_s -= min(CAESURA_S, 0.9 * (end_s - clock.seconds(note.beat)))
+            end_s = _breathe(clock.seconds(note.begins_at), end_s)
+        if silences and note.end in silences:
+            end_s -= min(CAESURA_S, 0.9 * (end_s - clock.seconds(note.begins_at)))
         over = trills.over(note)
         trill = None if over is None else 2.0 if over.value is None else over.value
-        played.append(Played(note, clock.seconds(note.beat), end_s, trill=trill))
+        played.append(Played(note, clock.seconds(note.begins_at), end_s, trill=trill))
     for at, (one, other) in enumerate(pairwise(notes)):
         if one.end != other.beat or is_plucked(other, actives[at + 1]):
             continue
@@ -106,7 +106,9 @@ def _go_on(played: list[Played], at: int) -> None:
 
 
 def _sounding_end(note: Note, active: Active, clock: WrittenClock, is_slurred: bool) -> float:
-    begin_s, end_s = clock.seconds(note.beat), clock.seconds(note.end)
+    begin_s, end_s = clock.seconds(note.begins_at), clock.seconds(note.ends_at)
+    if not note.marks and (is_slurred or not active.short):
+        return end_s
     if note.marked("caesura"):
         end_s -= CAESURA_S
     shares = [share for name, share in SHARES.items() if note.marked(name)]

@@ -103,7 +103,7 @@ def leading_notes(written: Written, number: int) -> list[ScoreNote]:
     """
     at = WrittenClock(written).seconds
     return [
-        ScoreNote(-1, -1, 0, _key_of(n.pitch), 0, at(n.beat), at(n.end), float(n.beat))
+        ScoreNote(-1, -1, 0, _key_of(n.pitch), 0, at(n.begins_at), at(n.ends_at), n.begins_at)
         for n in written.parts[number].notes
     ]
 
@@ -149,7 +149,7 @@ class _Performer:
     def _play(self, played: Played, active: Active) -> None:
         note, begin_s = played.note, played.begin_s
         self._count_left(note, active)
-        values = values_of(note, active, self._clock.quarter_s(note.beat), self._within)
+        values = values_of(note, active, self._clock.quarter_s(note.begins_at), self._within)
         if played.direction:
             values[DIRECTION] = played.direction
         if played.slide_s > 0.0:
@@ -194,14 +194,14 @@ class _Performer:
         self._add(end_s, OFF, self._beat(end_s, note), off)
 
     def _beat(self, time_s: float, note: Note) -> float:
-        at_s = self._clock.seconds(note.beat)
-        return float(note.beat) if abs(time_s - at_s) < 1e-9 else self._clock.beat_at(time_s)
+        at_s = self._clock.seconds(note.begins_at)
+        return note.begins_at if abs(time_s - at_s) < 1e-9 else self._clock.beat_at(time_s)
 
     def _swell(self, played: Played) -> None:
         """Controller 11 as a hairpin has it, below the loudest moment of the note."""
         note = played.note
-        begin, length = float(note.beat), float(note.length)
-        length_s = self._clock.seconds(note.end) - self._clock.seconds(note.beat)
+        begin, length = note.begins_at, float(note.length)
+        length_s = self._clock.seconds(note.ends_at) - self._clock.seconds(note.begins_at)
         count = min(max(int(length_s / SWELL_S), 2), MAX_STEPS)
         beats = [begin + length * step / count for step in range(count)]
         for step, below_db in enumerate(self._loudness.below_db(note, beats)):
@@ -241,6 +241,8 @@ class _Performer:
 
     def _count_left(self, note: Note, active: Active) -> None:
         """Count marks that cannot be played as written."""
+        if not note.marks:
+            return
         if note.marked("harmonic") and harmonic_of(note, self._within) is None:
             self._left["a harmonic that does not speak is played as a light stopped note"] += 1
         inner, outer = self._within.open_notes

@@ -50,8 +50,6 @@ class WrittenClock:
             quarters = tempi[at].quarters_per_minute if at >= 0 else notated.DEFAULT_TEMPO
             rates.append(60.0 / min(max(quarters, notated.LOWEST_TEMPO), notated.HIGHEST_TEMPO))
         self._rates = self._stretched(rates, stretches)
-        # Seconds of beats, by their ids: each beat is kept, so that no other has its id.
-        self._known: dict[int, tuple[Fraction, float]] = {}
         self._seconds = [0.0]
         for (beat, after), rate in zip(pairwise(self._beats), self._rates, strict=False):
             self._seconds.append(self._seconds[-1] + (after - beat) * rate)
@@ -69,15 +67,9 @@ class WrittenClock:
 
     def seconds(self, beat: Fraction | float) -> float:
         """Seconds at a beat."""
-        known = self._known.get(id(beat))
-        if known is not None:
-            return known[1]
         exact = float(beat)
         at = self._at(exact)
-        seconds = self._seconds[at] + (exact - self._beats[at]) * self._rates[at]
-        if isinstance(beat, Fraction):
-            self._known[id(beat)] = beat, seconds
-        return seconds
+        return self._seconds[at] + (exact - self._beats[at]) * self._rates[at]
 
     def beat_at(self, seconds: float) -> float:
         """The beat at so many seconds."""

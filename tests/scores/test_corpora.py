@@ -131,7 +131,7 @@ def test_scores_of_others_are_read_as_two_readers_agree(subtests, tmp_path):
                     differ.append((name, mine if isinstance(mine, str) else ""))
                 elif not any(same):
                     table[f"{name}: {mine if isinstance(mine, str) else ''}"] += 1
-            print(corpus.name, kind, dict(table), "differ:", differ)
+            print(corpus.name, kind, dict(table), "differ:", differ)  # noqa: T201 - shown by -s
             counts["both"] += table["both agree"]
             counts["differ"] += len(differ)
             with subtests.test(f"{corpus.name} {kind}"):

@@ -16,7 +16,7 @@ import pytest
 from midi_bytes import END, midi, off, on
 
 from yehu_server.errors import YehuError
-from yehu_server.scores.abc.voice import TOKEN
+from yehu_server.scores.abc.tokens import TOKEN
 from yehu_server.scores.reading import read_any
 
 FEW, MORE = 100, 800

@@ -7,21 +7,12 @@ from collections import Counter
 from collections.abc import Sequence
 
 from yehu_server.errors import one_line
-from yehu_server.scores.abc.vocabulary import CLEFS, PLAYED, PROPERTIES
+from yehu_server.scores.abc.tokens import ACCIDENTAL, ACCIDENTALS, CLEF, GLUED, KEY, PROPERTY
+from yehu_server.scores.abc.vocabulary import ALTERS, CLEFS, MODES, PLAYED, PROPERTIES
 from yehu_server.scores.written.layout import LETTERS, key_alter
 
 SHARPS = "FCGDAEB"  # in the order in which keys get them
-MODES = {"maj": 0, "ion": 0, "mix": -1, "dor": -2, "min": -3, "m": -3, "aeo": -3, "phr": -4,
-         "loc": -5, "lyd": 1}  # fmt: skip
 SIGNS = {"": 0, "#": 1, "♯": 1, "sharp": 1, "b": -1, "♭": -1, "flat": -1}
-ALTERS = {"^^": 2.0, "^": 1.0, "=": 0.0, "_": -1.0, "__": -2.0}
-_WORD = re.compile(r'[A-Za-z]+=(?:"[^"]*"|[^\s"]*)|"[^"]*"|[^\s"]+')
-_KEY = re.compile(r"([A-Ga-g])(#|b(?!lu)|♯|♭|sharp|flat)?([A-Za-z]*)")
-_ACCIDENTALS = re.compile(r"(?:(?:\^\^?|__?|=)[A-Ga-g])+")
-_GLUED = re.compile(r"(?<=[A-Za-z#♯♭])(?=[\^_])")
-_ACCIDENTAL = re.compile(r"(\^\^?|__?|=)([A-Ga-g])")
-# The octaves of a clef: those of the standard, and _8 and ^8 as abcm2ps has them.
-_CLEF = re.compile(r"([A-Za-z]+)\d?(?:([+\-^_])(8|15))?")
 
 Key = tuple[int, dict[str, float]]  # its sharps, and the accidental of each letter
 
@@ -34,10 +25,10 @@ def properties_of(text: str, unknown: Counter[str]) -> tuple[dict[str, int], str
     """
     found: dict[str, int] = {}
     name, others = "", []
-    for word in _WORD.findall(text):
+    for word in PROPERTY.findall(text):
         key, equals, value = word.partition("=")
         key, value = key.lower(), value.strip('"')
-        is_bare = _CLEF.fullmatch(word) and _octaves_of(word, bare=True) is not None
+        is_bare = CLEF.fullmatch(word) and _octaves_of(word, bare=True) is not None
         if is_bare or (equals and key == "clef"):
             octaves = _octaves_of(word if is_bare else value)
             if octaves is None:
@@ -60,7 +51,7 @@ def _octaves_of(clef: str, *, bare: bool = False) -> int | None:
 
     A bare word is a clef only where it cannot be a key.
     """
-    found = _CLEF.fullmatch(clef)
+    found = CLEF.fullmatch(clef)
     if found is None or found[1] not in CLEFS or (bare and len(found[1]) < 3):
         return None
     if bare and found[1] == "none":
@@ -71,15 +62,15 @@ def _octaves_of(clef: str, *, bare: bool = False) -> int | None:
 
 def key_of(words: Sequence[str], unknown: Counter[str]) -> Key | None:
     """Return the key that words name; None, and counted in `unknown`, where they name none."""
-    words = [part for word in words for part in _GLUED.split(word)]  # C^f^c
+    words = [part for word in words for part in GLUED.split(word)]  # C^f^c
     first, rest = (words[0], words[1:]) if words else ("none", [])
     if first in ("HP", "Hp"):
         fifths = 2
-    elif first == "none" or "exp" in words or _ACCIDENTALS.fullmatch(first):
+    elif first == "none" or "exp" in words or ACCIDENTALS.fullmatch(first):
         fifths, rest = 0, list(words)  # of which the accidentals say all
     else:
         signed = bool(rest) and rest[0].lower() in ("sharp", "flat")
-        found = _KEY.fullmatch(first + (rest.pop(0).lower() if signed else ""))
+        found = KEY.fullmatch(first + (rest.pop(0).lower() if signed else ""))
         mode = (found[3] if found else "").lower()
         if found and not mode and rest and rest[0][:3].lower() in MODES:
             mode = rest.pop(0).lower()
@@ -92,8 +83,8 @@ def key_of(words: Sequence[str], unknown: Counter[str]) -> Key | None:
         fifths += MODES.get(mode[:3], 0)
     alters = {letter: float(key_alter(at, fifths)) for at, letter in enumerate(LETTERS)}
     for word in rest:
-        if _ACCIDENTALS.fullmatch(word):
-            alters |= {letter.upper(): ALTERS[sign] for sign, letter in _ACCIDENTAL.findall(word)}
+        if ACCIDENTALS.fullmatch(word):
+            alters |= {letter.upper(): ALTERS[sign] for sign, letter in ACCIDENTAL.findall(word)}
         elif word not in ("exp", "none"):
             unknown[one_line(f"{word} in K:{' '.join(words)}"[:40])] += 1
     return max(min(fifths, 7), -7), alters

@@ -14,9 +14,10 @@ from fractions import Fraction
 from itertools import pairwise
 
 from yehu_server.errors import ScoreError, one_line
+from yehu_server.scores.abc import vocabulary
 from yehu_server.scores.abc.fields import metre_of, order_of_parts
 from yehu_server.scores.abc.keys import properties_of
-from yehu_server.scores.abc.vocabulary import DIRECTIVES, FIELDS, LEFT_OUT, SHORTCUTS
+from yehu_server.scores.abc.tokens import BLOCK, FIELD
 from yehu_server.scores.abc.voice import VoiceReader
 from yehu_server.scores.encodings import decoded, encoding_of
 from yehu_server.scores.score import errors_name, read_score_bytes
@@ -24,12 +25,6 @@ from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_PARTS, Written
 
 MAX_BYTES = 4 << 20
-MUSIC_FIELDS = "KLMQR"
-SETTINGS = ("propagate-accidentals", "ratio")  # directives that change how music is read
-_FIELD = re.compile(r"([A-Za-z+]):(?![|:])\s*(.*)")  # C:| is a note at the end of a repeat
-_BLOCK = re.compile(r"%%\s*(begin|end)([a-z]\w*)")
-HORNPIPE = "a hornpipe (R:): pairs of even notes are played two to one"
-NAMES = {"m": "macros (m:)", "s": "lines of symbols (s:)"}  # of fields that are left out
 
 
 def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
@@ -71,8 +66,10 @@ def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
             is_open = False
         if is_open:
             tunes[-1].append(line)
-        elif not tunes and ((found := _FIELD.match(line)) or line.startswith("%%")):
-            head += [line] if found is None or found[1] in FIELDS else []  # it may be any text
+        elif not tunes and ((found := FIELD.match(line)) or line.startswith("%%")):
+            head += (
+                [line] if found is None or found[1] in vocabulary.FIELDS else []
+            )  # it may be any text
     return head, tunes
 
 
@@ -81,7 +78,7 @@ def _without_blocks(lines: Sequence[str]) -> Iterator[str]:
 
     One without an end is left as it is: its directive is told as not understood.
     """
-    marks = [_BLOCK.match(line) for line in lines]
+    marks = [BLOCK.match(line) for line in lines]
     last = {found[2]: at for at, found in enumerate(marks) if found and found[1] == "end"}
     inside = ""
     for at, (line, found) in enumerate(zip(lines, marks, strict=True)):
@@ -108,7 +105,7 @@ class _Tune:
         self._title = ""
         self._in_music = False
         self._now: VoiceReader | None = None
-        self._shortcuts = dict(SHORTCUTS)
+        self._shortcuts = dict(vocabulary.SHORTCUTS)
 
     def read(self, lines: Sequence[str]) -> Written:
         for written in lines:
@@ -117,7 +114,7 @@ class _Tune:
             line = re.sub(r"(?<!\\)%.*", "", written).rstrip()
             if not line.strip():
                 continue
-            found = _FIELD.match(line)
+            found = FIELD.match(line)
             if found:
                 self._field(found[1], found[2].strip())
             elif self._in_music:
@@ -132,9 +129,9 @@ class _Tune:
         if not parts:
             raise ScoreError("has no notes of ABC")
         sections = self._sections(max(len(bars) for _, bars in parts))
-        written = assembled(parts, self._title, self._unknown, self._warnings, sections)
+        read = assembled(parts, self._title, self._unknown, self._warnings, sections)
         swings = any(voice.is_hornpipe for voice in self._voices.values())
-        return replace(written, remarks=(HORNPIPE,)) if swings else written
+        return replace(read, remarks=(vocabulary.HORNPIPE,)) if swings else read
 
     def _reader(self) -> VoiceReader:
         return self._now or self._voice("1")
@@ -147,7 +144,7 @@ class _Tune:
             metre = next((metre_of(text) for key, text in self._defaults[::-1] if key == "M"), None)
             if metre is not None and metre < 3:
                 voice.unit = Fraction(1, 4)
-            for key in [*"LMKQR", *SETTINGS]:
+            for key in [*"LMKQR", *vocabulary.SETTINGS]:
                 for letter, text in self._defaults:
                     if letter == key and (key != "Q" or not self._voices):
                         voice.field(letter, text)
@@ -170,13 +167,13 @@ class _Tune:
             self._take_voice(text)
         elif letter == "P":
             self._labels.append((text.strip()[:1], self._reader().label()))
-        elif self._in_music and letter in MUSIC_FIELDS:
+        elif self._in_music and letter in vocabulary.MUSIC_FIELDS:
             self._reader().field(letter, text)
-        elif letter in MUSIC_FIELDS:
+        elif letter in vocabulary.MUSIC_FIELDS:
             self._defaults.append((letter, text))
             self._in_music = letter == "K" or self._in_music
-        elif FIELDS.get(letter, LEFT_OUT) == LEFT_OUT:
-            self._unknown[NAMES.get(letter, f"{letter}:")] += 1
+        elif vocabulary.FIELDS.get(letter, vocabulary.LEFT_OUT) == vocabulary.LEFT_OUT:
+            self._unknown[vocabulary.NAMES.get(letter, f"{letter}:")] += 1
 
     def _directive(self, text: str) -> None:
         """Take a directive (11), of a line of its own or of an I: field."""
@@ -185,12 +182,14 @@ class _Tune:
         if name.lower() == "midi":
             name = f"MIDI {value.partition(' ')[0]}"
             setting, value = [*value.split(maxsplit=1), "", ""][:2]
-        if setting in SETTINGS:
+        if setting in vocabulary.SETTINGS:
             if self._in_music:
                 self._reader().field(setting, value)
             else:
                 self._defaults.append((setting, value))
-        elif name[:1].isalpha() and re.sub(r"-?\d+$", "", name.lower()) not in DIRECTIVES:
+        elif (
+            name[:1].isalpha() and re.sub(r"-?\d+$", "", name.lower()) not in vocabulary.DIRECTIVES
+        ):
             self._unknown[one_line(f"%%{name}"[:40])] += 1
 
     def _take_voice(self, text: str) -> None:

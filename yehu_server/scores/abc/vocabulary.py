@@ -1,4 +1,4 @@
-"""What ABC has: fields, properties of keys and voices, directives and decorations.
+"""What ABC has: fields, properties of keys and voices, keys, directives and decorations.
 
 A field is `PLAYED`, `SILENT`, which means that it has no sound, or `LEFT_OUT`, of which the reader
 tells. What is in no table is not understood. Fields, properties and directives are those of the
@@ -9,6 +9,7 @@ abcm2ps, abcjs and abc2midi add to them.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 
 PLAYED, SILENT, LEFT_OUT = "played", "silent", "left out"
 FIELDS: Mapping[str, str] = {
@@ -29,6 +30,9 @@ CLEFS = frozenset({
     "treble", "alto", "tenor", "bass", "perc", "none", "soprano", "mezzo", "mezzosoprano",
     "baritone", "auto", "P", "G", "C", "F",
 })  # fmt: skip
+MODES = {"maj": 0, "ion": 0, "mix": -1, "dor": -2, "min": -3, "m": -3, "aeo": -3, "phr": -4,
+         "loc": -5, "lyd": 1}  # fmt: skip
+ALTERS = {"^^": 2.0, "^": 1.0, "=": 0.0, "_": -1.0, "__": -2.0}
 # Directives of paper, text and fonts. Names may be followed by numbers.
 _OF_THE_PAGE = """
 abc abc-charset abc-copyright abc-creator abc-edited-by abc-include abc-version abcm2ps
@@ -101,3 +105,12 @@ JUMPS: Mapping[str, str] = {
     "d.s.alcoda": "dalsegno",
 }  # fmt: skip
 IGNORED = frozenset({"thumb", "shortphrase", "mediumphrase", "longphrase", "5", "editorial"})
+
+# How music is read.
+MUSIC_FIELDS = "KLMQR"
+SETTINGS = ("propagate-accidentals", "ratio")  # directives that change how music is read
+HORNPIPE = "a hornpipe (R:): pairs of even notes are played two to one"
+NAMES = {"m": "macros (m:)", "s": "lines of symbols (s:)"}  # of fields that are left out
+SPREADS = ("pitch", "octave", "not")  # how far an accidental reaches in its bar (11.3)
+SWUNG = {"4/4": Fraction(1, 2), "C": Fraction(1, 2), "2/4": Fraction(1, 4)}  # of hornpipes
+TIMES = {2: 3, 3: 2, 4: 3, 6: 2, 8: 3}  # of tuplets; others depend on the metre

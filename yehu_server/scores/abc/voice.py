@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from yehu_server.errors import ScoreError, one_line
-from yehu_server.scores.abc import fields
-from yehu_server.scores.abc.keys import ALTERS, key_of, properties_of
-from yehu_server.scores.abc.vocabulary import DECORATIONS, IGNORED, JUMPS, WEDGES
+from yehu_server.scores.abc import fields, vocabulary
+from yehu_server.scores.abc.keys import key_of, properties_of
+from yehu_server.scores.abc.tokens import KINDS, NOTE, NOTE_AT, TOKEN
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
@@ -20,42 +20,9 @@ from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
 MIDDLE_C = 60.0
-SPREADS = ("pitch", "octave", "not")  # how far an accidental reaches in its bar (11.3)
-SWUNG = {"4/4": Fraction(1, 2), "C": Fraction(1, 2), "2/4": Fraction(1, 4)}  # of hornpipes
-TIMES = {2: 3, 3: 2, 4: 3, 6: 2, 8: 3}  # of tuplets; others depend on the metre
 LONGEST = 64  # quarters of a note
 MAX_BARS_REST = 1000
-MAX_LENGTHS = 1000  # that are remembered
-LENGTH = r"\d*/*\d*"
-NOTE = rf"(\^\^|\^|__|_|=)?([A-Ga-g])([',]*)({LENGTH})(-?)"
-TOKEN = re.compile(
-    rf"""(?P<field>\[[A-Za-z]:[^\]]{{0,255}}\])
-|(?P<bar>\.?(?::*\[?\|[|\]]*:*|::+))(?P<number>[1-9][\d,\-]*)?
-|(?P<ending>\[[1-9][\d,\-]*)
-|(?P<text>"[^"]*")
-|(?P<sign>![^!|\s]+!|\+[^+|\s]+\+)
-|(?P<chord>\[[^\[\]|]*\])(?P<chord_length>{LENGTH})(?P<chord_tie>-?)
-|(?P<grace>\{{[^{{}}]*\}})
-|(?P<note>{NOTE})
-|(?P<rest>[zx])(?P<rest_length>{LENGTH})
-|(?P<bars>[ZX])(?P<bars_count>\d*)
-|\((?P<tuplet>\d)(?P<ratio>(?::\d*){{0,2}})
-|(?P<slur>[()])
-|(?P<tie>-)
-|(?P<broken>>+|<+)
-|(?P<short>[.~H-Yh-w])
-|(?P<over>&)
-|(?P<space>[\s`*$\\]+|y\d*|!)
-|(?P<other>.)""",
-    re.VERBOSE,
-)
-# The kind of a token by the last group that is in it, where that is not its own.
-KINDS = {
-    "number": "bar", "chord_length": "chord", "chord_tie": "chord", "rest_length": "rest",
-    "bars_count": "bars", "ratio": "tuplet",
-}  # fmt: skip
 ONE = Fraction(1)
-NOTE_AT = TOKEN.groupindex["note"]  # its own groups follow
 
 
 class VoiceReader:
@@ -73,11 +40,11 @@ class VoiceReader:
         self._alters = dict.fromkeys(LETTERS, 0.0)
         self._fifths = 0
         self._properties = {"clef": 0, "octave": 0, "transpose": 0}
-        self._spread = SPREADS[0]
+        self._spread = vocabulary.SPREADS[0]
         self._ratio = (3, 1)  # of broken rhythm
         self.is_hornpipe = False
         self._before = Fraction(0)  # the length of the last bar
-        self._swing_unit: Fraction | None = SWUNG["C"]
+        self._swing_unit: Fraction | None = vocabulary.SWUNG["C"]
         self._metre: Fraction | None = Fraction(4)
         self._odd_times = 2  # of tuplets of 5, 7 and 9: 3 in compound time
         self._place = ("C", 0, 0.0)  # of the last note: letter, octave, accidental
@@ -93,9 +60,8 @@ class VoiceReader:
         self._last: list[RawNote] = []
         self._last_begin = Fraction(0)
         self._next_factor = ONE
-        # Lengths by how they are written, in one unit: most are alike, and fractions take long.
+        # Lengths by how they are written: most are alike, and fractions take long.
         self._lengths: dict[str, Fraction] = {}
-        self._lengths_unit = self.unit
         self._tuplet: list[Fraction] = []  # factors of the next notes
         self._count = 0
         self._in_overlay = False
@@ -124,16 +90,17 @@ class VoiceReader:
             self._metre = fields.metre_of(value)
             self._bar.metre = self._metre
             self._odd_times = 3 if value.strip() in ("6/8", "9/8", "12/8") else 2
-            self._swing_unit = SWUNG.get(value.strip())
+            self._swing_unit = vocabulary.SWUNG.get(value.strip())
         elif letter == "L":
-            self.unit = fields.length_of(value) or self.unit
+            self.unit, self._lengths = fields.length_of(value) or self.unit, {}
         elif letter == "R":
             self.is_hornpipe = value.lower().startswith("hornpipe")
             self._ratio = (2, 1) if self.is_hornpipe else (3, 1)
         elif letter == "propagate-accidentals":
-            self._spread = value if value in SPREADS else self._spread
-        elif letter == "ratio" and (found := re.fullmatch(r"([1-9]\d?)\s+([1-9]\d?)", value)):
-            self._ratio = int(found[1]), int(found[2])
+            self._spread = value if value in vocabulary.SPREADS else self._spread
+        elif letter == "ratio" and re.fullmatch(r"[1-9]\d? +[1-9]\d?", value):
+            long, short = value.split()
+            self._ratio = int(long), int(short)
         elif letter == "Q":
             tempo = fields.tempo_of(value, self.unit)
             if tempo is not None:
@@ -205,7 +172,7 @@ class VoiceReader:
         octave = letter.islower() + octaves.count("'") - octaves.count(",")
         reached = name if self._spread == "pitch" else (name, octave)
         if sign:
-            alter = ALTERS[sign]
+            alter = vocabulary.ALTERS[sign]
             if self._spread != "not":
                 self._in_bar[reached] = alter
         elif (name, octave) in self._tied and reached not in self._in_bar:
@@ -221,9 +188,7 @@ class VoiceReader:
     def _length(self, text: str) -> Fraction:
         """A length in quarters."""
         length = self._lengths.get(text)
-        if length is None or self._lengths_unit is not self.unit:
-            if self._lengths_unit is not self.unit or len(self._lengths) >= MAX_LENGTHS:
-                self._lengths_unit, self._lengths = self.unit, {}
+        if length is None:
             length = self._lengths[text] = _length(text) * self.unit
         return length
 
@@ -295,7 +260,9 @@ class VoiceReader:
         self._at = self._last_begin + length
 
     def _begin_tuplet(self, count: int, ratio: list[str]) -> None:
-        times = int(ratio[0]) if ratio and ratio[0] else TIMES.get(count, self._odd_times)
+        times = (
+            int(ratio[0]) if ratio and ratio[0] else vocabulary.TIMES.get(count, self._odd_times)
+        )
         notes = int(ratio[1]) if len(ratio) > 1 and ratio[1] else count
         if count and times and notes < 64:
             self._tuplet = [Fraction(times, count)] * notes
@@ -316,15 +283,15 @@ class VoiceReader:
     # -- marks -------------------------------------------------------------------------------
 
     def _sign(self, name: str) -> None:
-        if name in DECORATIONS:
-            self._marks.append(Mark(*DECORATIONS[name]))
+        if name in vocabulary.DECORATIONS:
+            self._marks.append(Mark(*vocabulary.DECORATIONS[name]))
         elif name in DYNAMICS or name in FORCED:
             self._direct("sign", name)
-        elif name in WEDGES:
-            self._direct("wedge", WEDGES[name])
-        elif name.lower() in JUMPS:
-            self._bar.lines.jumps.add(JUMPS[name.lower()])
-        elif name not in IGNORED:
+        elif name in vocabulary.WEDGES:
+            self._direct("wedge", vocabulary.WEDGES[name])
+        elif name.lower() in vocabulary.JUMPS:
+            self._bar.lines.jumps.add(vocabulary.JUMPS[name.lower()])
+        elif name not in vocabulary.IGNORED:
             self._unknown[one_line(name[:40])] += 1
 
     def _text(self, text: str) -> None:

@@ -52,9 +52,7 @@ def _octaves_of(clef: str, *, bare: bool = False) -> int | None:
     A bare word is a clef only where it cannot be a key.
     """
     found = CLEF.fullmatch(clef)
-    if found is None or found[1] not in CLEFS or (bare and len(found[1]) < 3):
-        return None
-    if bare and found[1] == "none":
+    if not found or found[1] not in CLEFS or (bare and found[1] in (*"PGCF", "none")):
         return None
     octaves = {None: 0, "8": 1, "15": 2}[found[3]]
     return -octaves if found[2] in ("-", "_") else octaves

@@ -87,8 +87,7 @@ class VoiceReader:
                 self._fifths, self._alters = key
             self.set_properties(found)
         elif letter == "M":
-            self._metre = fields.metre_of(value)
-            self._bar.metre = self._metre
+            self._metre = self._bar.metre = fields.metre_of(value)
             self._odd_times = 3 if value.strip() in ("6/8", "9/8", "12/8") else 2
             self._swing_unit = vocabulary.SWUNG.get(value.strip())
         elif letter == "L":
@@ -201,10 +200,8 @@ class VoiceReader:
         if len(pitched) > 1:
             self._warnings["lower notes of chords are not played"] += len(pitched) - 1
         note = RawNote(self._at, length, pitch, ("1", "1"), marks=self._marks)
-        self._marks = []
         note.ends += [("slur", "start", number) for number in self._starts]
-        self._starts = []
-        self._tied = {}
+        self._marks, self._starts, self._tied = [], [], {}
         self._add([note], length)
         if ties:
             self._tie()
@@ -242,9 +239,8 @@ class VoiceReader:
         for each in re.finditer(NOTE, text):
             self._count_note()
             pitch, _ = self._pitched(*each.groups()[:4])
-            self._bar.notes.append(
-                RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
-            )
+            small = RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
+            self._bar.notes.append(small)
 
     def _break(self, signs: str) -> None:
         """Broken rhythm: one of two notes is longer by what the other loses."""
@@ -317,8 +313,7 @@ class VoiceReader:
     # -- bars --------------------------------------------------------------------------------
 
     def _bar_line(self, sign: str, number: str) -> None:
-        if sign == "::":
-            sign = ":|:"
+        sign = ":|:" if sign == "::" else sign
         before = len(sign) - len(sign.lstrip(":"))
         after = len(sign) - len(sign.rstrip(":"))
         self._end_bar(min(before + 1, MAX_TIMES) if before else 0)
@@ -367,8 +362,7 @@ class VoiceReader:
         self._end_bar()
         codas = [bar for bar in self.bars if "coda" in bar.lines.jumps]
         if len(codas) > 1 and not any("tocoda" in bar.lines.jumps for bar in self.bars):
-            codas[0].lines.jumps -= {"coda"}
-            codas[0].lines.jumps.add("tocoda")
+            codas[0].lines.jumps ^= {"coda", "tocoda"}
 
 
 def _length(text: str) -> Fraction:

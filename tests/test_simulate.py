@@ -208,6 +208,23 @@ def test_a_plucked_string_starts_as_a_triangle_at_rest_up_to_the_bridge():
     np.testing.assert_allclose(arrays["string_1"][1], shape, rtol=0, atol=2e-4)
 
 
+def test_a_string_in_two_directions_starts_turned_from_the_bow_by_the_angle_of_its_pluck():
+    gesture = {
+        "duration": 0.02,
+        "instrument": {"directions": "two"},
+        "pluck": PLUCK | {"angle": 60.0},
+    }
+    found = simulate(gesture_from(gesture), energy=True, strings_every=8)
+    arrays, turned = found.arrays, math.tan(math.radians(60.0))
+    np.testing.assert_allclose(arrays["string_1_normal"][0], turned * arrays["string_1"][0])
+    assert not arrays["string_2_normal"][0].any()
+    assert np.abs(arrays["string_2_normal"][-1]).max() > 0.0  # by the bridge
+    assert np.abs(arrays["energy_error"]).max() < 1e-10
+    assert found.meta["instrument"]["directions"] == "two"
+    with pytest.raises(ParameterError, match='angle: needs an instrument with directions = "two"'):
+        gesture_from({"pluck": PLUCK | {"angle": 60.0}})
+
+
 def test_a_hammer_is_lifted_before_and_after_its_curve():
     one = run({"duration": 0.05, "hammer": [[0.001, 5.0], [0.002, 5.0]]})["bridge_velocity"]
     curve = [[0.001, 0.0], [0.001, 5.0], [0.002, 5.0], [0.002, 0.0]]

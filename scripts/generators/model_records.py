@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from yehu_server.core.physics import layout
+from yehu_server.core.physics import layout, planes
 from yehu_server.core.physics.power import TABLES as POWER_TABLES
 
 KINDS = {
@@ -15,11 +15,12 @@ KINDS = {
     "Work": (layout.WORK, "Intermediate results of one step."),
     "State": (layout.STATE, "All that a step changes."),
     "Refined": (layout.REFINED, "What an instrument with torsion, or with wide hair, has besides."),
+    "Planes": (planes.PLANES, "What an instrument in two directions has besides."),
 }
 HEAD = '''"""Types of the model's records; written by scripts/generate from layout.py.
 
-In compiled code a record of an array of layout.MODEL, layout.STATE or layout.REFINED has these
-attributes.
+In compiled code a record of an array of layout.MODEL, layout.STATE, layout.REFINED or
+planes.PLANES has these attributes.
 docs/notation.md has their symbols and units.
 """
 

@@ -58,9 +58,10 @@ for instrument in ({}, {"torsion": "on"}):
     data = {"duration": 0.02, "instrument": instrument, "pluck": pluck}
     simulate(gesture_from(data), energy=True)
     sweep(study_of({"vary": {"force": [0.5]}, "duration": 0.06, "instrument": instrument}))
+simulate(gesture_from(data | {"instrument": {"directions": "two"}}), energy=True)
 print("numba" in sys.modules)
 """
-"""Simulates and sweeps, by both kernels; prints whether numba was there."""
+"""Simulates and sweeps, by all kernels; prints whether numba was there."""
 
 
 @pytest.fixture(scope="module")

@@ -75,11 +75,15 @@ HAMMER_LIMIT = 1e4  # N
 
 @dataclass(frozen=True)
 class Pluck:
-    """A string released from a triangle: string 1 or 2, position and amplitude in metres."""
+    """A string released from a triangle: string 1 or 2, position and amplitude in metres.
+
+    `angle` (degrees) is that from the bow's direction, towards the player's fingers.
+    """
 
     string: int
     position: float
     amplitude: float
+    angle: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -167,7 +171,6 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
         if name in controls.data
     }
     controls.refuse_others(*ALL_CONTROLS)
-    shortest = min(string.L for string in quantities.strings)
     for name, control in ALL_CONTROLS.items():
         if not name.startswith(("bow_position", "finger_position")):
             continue
@@ -177,7 +180,7 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
                     bridge = f"the bridge ({quantities.bridge_x} m)"
                     raise ParameterError(f"{position} m is not between the loop (0) and {bridge}")
     has_pluck, has_hammer = (table.data.get(name) is not None for name in ("pluck", "hammer"))
-    pluck = _pluck(table.table("pluck"), quantities.bridge_x, shortest) if has_pluck else None
+    pluck = _pluck(table.table("pluck"), quantities) if has_pluck else None
     hammer: Curve = ()
     if has_hammer:
         hammer = table.read("hammer", _curve, (), -HAMMER_LIMIT, HAMMER_LIMIT, "N")
@@ -190,15 +193,19 @@ def sample_rate(value: Any) -> float:
     return number(value, MIN_RATE, HIGHEST_RATE, "Hz")
 
 
-def _pluck(table: Fields, bridge: float, shortest: float) -> Pluck:
+def _pluck(table: Fields, quantities: Quantities) -> Pluck:
+    bridge, shortest = quantities.bridge_x, min(string.L for string in quantities.strings)
     pluck = Pluck(
         string=int(table.read("string", number, 1, 1, 2)),
         position=table.read("position", number, 0.1, 0.0, shortest, "m"),
         amplitude=table.read("amplitude", number, 0.001, -0.1, 0.1, "m"),
+        angle=table.read("angle", number, 0.0, -360.0, 360.0, "degrees"),
     )
     table.refuse_others()
     if pluck.string != table.data.get("string", 1):
         table.add_error("string", f"expected 1 or 2, got {table.data['string']}")
+    if pluck.angle != 0.0 and quantities.directions == "one":
+        table.add_error("angle", 'needs an instrument with directions = "two"')
     if pluck.position in (0.0, bridge, shortest):
         table.add_error("position", f"{pluck.position} m is not on the free string")
     return pluck

@@ -58,6 +58,8 @@ SIGNALS = {
     "strings_time": Label("s", "time of the strings' shapes"),
     "string_1": Label("m", "displacement of string 1"),
     "string_2": Label("m", "displacement of string 2"),
+    "string_1_normal": Label("m", "displacement of string 1, normal to the bow"),
+    "string_2_normal": Label("m", "displacement of string 2, normal to the bow"),
     "x_1": Label("m", "place on string 1, from the loop"),
     "x_2": Label("m", "place on string 2, from the loop"),
 }
@@ -85,8 +87,8 @@ def _unit_of_quantity(path: str) -> str:
 
 def dimensions(name: str, values: Any) -> tuple[str, ...]:
     """The dimensions of a signal, by its name."""
-    if name in ("string_1", "string_2"):
-        return ("strings_time", f"x_{name[-1]}")
+    if name.startswith(("string_1", "string_2")):
+        return ("strings_time", f"x_{name[len('string_')]}")
     if name in ("strings_time", "x_1", "x_2"):
         return (name,)
     if name == "contact_force":

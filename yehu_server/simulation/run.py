@@ -6,6 +6,7 @@ It uses the kernel that plays notes. docs/simulate.md describes the gesture file
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.compile.machine_code import SIMULATING
-from yehu_server.core.physics import kernel, layout, refined, time_loop
+from yehu_server.core.physics import kernel, layout, planes, time_loop
 from yehu_server.core.physics.bow import friction_bound
 from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
-from yehu_server.core.physics.pluck import pluck_string
+from yehu_server.core.physics.pluck import pluck_string, pull_string
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import OutputError
 from yehu_server.scores.gesture import CONTROLS, Gesture
@@ -35,7 +36,13 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 MAX_BYTES = 8 * 2**30
 # What is called, but for what playing calls, by the file that its machine code is kept in.
-COMPILED = {SIMULATING: (time_loop.advance_refined, time_loop.advance_with_ledger)}
+COMPILED = {
+    SIMULATING: (
+        time_loop.advance_refined,
+        time_loop.advance_in_two_directions,
+        time_loop.advance_with_ledger,
+    )
+}
 CHUNK = 1 << 14  # frames between two progress reports
 
 
@@ -154,7 +161,7 @@ def simulate(
     """
     fingers = gesture.fingers
     model = kernel.prepare(gesture.quantities, gesture.sample_rate, fingers)
-    more = refined.prepare(gesture.quantities, gesture.sample_rate)
+    more = planes.prepare(gesture.quantities, gesture.sample_rate)
     m = model[0]
     frames = gesture.frames
     columns = layout.probe_columns(fingers) + layout.control_columns(fingers)
@@ -168,17 +175,27 @@ def simulate(
     state = kernel.at_rest(model)
     if gesture.pluck is not None:
         pluck = gesture.pluck
-        pluck_string(model, state, pluck.string - 1, pluck.position, pluck.amplitude)
+        turn = math.radians(pluck.angle)
+        along = pluck.amplitude * math.cos(turn)
+        pluck_string(model, state, pluck.string - 1, pluck.position, along)
+        if pluck.angle != 0.0:
+            normal = pluck.amplitude * math.sin(turn)
+            pull_string(m, more[0]["normal"], pluck.string - 1, pluck.position, normal)
 
     controls = gesture.control_rows()
     probes = np.zeros((frames, layout.probe_columns(fingers)))
     ledger = np.zeros((frames if energy else 0, len(LEDGER)))
     shaped: list[list[Floats]] = [[], []]
+    has_two = time_loop.has_two_directions(more)
+    shaped_normal: list[list[Floats]] = [[], []]
     hop = strings_every or CHUNK
     for start in range(0, frames, hop):
         if strings_every:
             for i in range(STRINGS):
                 shaped[i].append(shape_of(m, state["motion"][0], i))
+                if has_two:
+                    level = int(state["motion"]["level"][0])
+                    shaped_normal[i].append(nodes_of(m, more[0]["normal"]["u"][level], i))
         part = slice(start, min(start + hop, frames))
         kept = ledger[part] if energy else None
         time_loop.run(model, state, more, controls[part], probes[part], kept)
@@ -190,8 +207,10 @@ def simulate(
         arrays |= {name: ledger[:, column] for column, name in enumerate(LEDGER)}
     if strings_every:
         arrays |= shapes_of(shaped, m, gesture.quantities, arrays["time"][::strings_every])
+        if has_two:
+            arrays |= {f"string_{i + 1}_normal": np.array(shaped_normal[i]) for i in range(STRINGS)}
     asked = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
-    own = None if more is None else more[0]
+    own = None if more is None else more[0]["refined"] if has_two else more[0]
     return Simulation(arrays, asked | metadata_of(m, state[0], frames, gesture.quantities, own))
 
 
@@ -267,5 +286,9 @@ def shape_of(m: Any, motion: Any, string: int) -> Floats:
 
     `m` and `motion` are records of ``layout.MODEL`` and ``layout.MOTION``.
     """
-    now: Floats = motion["u"][int(motion["level"]), string]
-    return now[GHOST : GHOST + int(m["N"][string]) + 1].copy()
+    return nodes_of(m, motion["u"][int(motion["level"])], string)
+
+
+def nodes_of(m: Any, u: Floats, string: int) -> Floats:
+    """Displacement (m) of the nodes of string 0 or 1, from those of both [shape=(2, points)]."""
+    return u[string, GHOST : GHOST + int(m["N"][string]) + 1].copy()

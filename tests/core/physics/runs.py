@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics import kernel, layout, refined, time_loop
+from yehu_server.core.physics import kernel, layout, planes, time_loop
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.string import set_Delta_u
 
@@ -90,7 +90,7 @@ def play(
     """Run the kernel over curves, given as functions of time (s) or as constants."""
     quantities = quantities or Quantities()
     model = kernel.prepare(quantities, rate, fingers)
-    more = refined.prepare(quantities, rate)
+    more = planes.prepare(quantities, rate)
     state = kernel.at_rest(model) if state is None else state
     frames = round(seconds * rate)
     if callable(curves):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.core.physics import layout
+from yehu_server.core.physics import layout, planes
 
 NOTATION = Path(__file__).parents[3] / "docs" / "notation.md"
 
@@ -26,6 +26,7 @@ def listed(heading: str) -> list[str]:
         ("STATE: contacts", layout.CONTACTS),
         ("STATE: work", layout.WORK),
         ("REFINED", layout.REFINED),
+        ("PLANES", planes.PLANES),
     ],
 )
 def test_each_field_stands_in_the_notation_once(heading, record):

@@ -52,7 +52,11 @@ def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: flo
     The nodes at the bridge are moved by what it takes to leave the bridge at rest, so
     that the constraint of [Yehu] eq. (12) holds from the first sample.
     """
-    m, s = model[0], state[0]["motion"]
+    pull_string(model[0], state[0]["motion"], i, position, amplitude)
+
+
+def pull_string(m: Any, motion: Any, i: int, position: float, amplitude: float) -> None:
+    """As `pluck_string`, in one direction of the string's motion (a record of MOTION)."""
     intervals, h = int(m["N"][i]), float(m["h"][i])
     x, x_c = np.arange(intervals + 1) * h, float(m["bridge_x"])
     foot = (0.0, x_c) if position < x_c else (x_c, intervals * h)
@@ -64,5 +68,5 @@ def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: flo
     at_bridge = uncompiled(interpolate)(u, first, weights) / float((weights * weights).sum())
     u[GHOST + first : GHOST + first + len(weights)] -= weights * at_bridge
     uncompiled(support)(u, intervals)
-    s["u"][:, i, :] = u
-    set_Delta_u(m, s)
+    motion["u"][:, i, :] = u
+    set_Delta_u(m, motion)

@@ -46,6 +46,8 @@ def choice(default: str, *others: str, source: str) -> Any:
 TABLE_1 = "[Yehu] table 1"
 DATA_SET = "[YehuData]"
 SMITH = "chosen: see rosin_heat.py; [Smith]"
+HAIR_NORMAL = "chosen: see press.py"
+SKIN = "chosen: see skin.py"
 OTHER_LAWS = "[Yehu]; see rosin_heat.py, friction_curve.py"
 
 
@@ -108,6 +110,11 @@ class BowQuantities:
     friction: str = choice("elasto-plastic", "thermal", "hyperbolic", source=OTHER_LAWS)
     cooling_time: float = quantity(1e-4, "s", 1e-6, 1.0, SMITH)
     epsilon_2: float = quantity(0.0, "kg/s", 0.0, 100.0, "[Willemsen]: viscous; [Yehu]: none")
+    # Of two directions: the bow as it presses.
+    M_n: float = quantity(0.03, "kg", 1e-4, 1.0, HAIR_NORMAL)
+    K_n: float = quantity(1.6e4, "N/m^alpha", 1.0, 1e9, HAIR_NORMAL)
+    alpha_n: float = quantity(1.5, "1", 1.001, 5.0, HAIR_NORMAL)
+    beta_n: float = quantity(2.5, "s/m", 0.0, 1e3, HAIR_NORMAL)
 
 
 @dataclass(frozen=True)
@@ -120,6 +127,10 @@ class FingerQuantities:
     beta: float = quantity(20.0, "s/m", 0.0, 1e3, "[Yehu] section 5.2")
     rest_height: float = quantity(0.5e-3, "m", 1e-6, 0.05, DATA_SET)
     R_t: float = quantity(1.0, "kg/s", 0.0, 1e4, "chosen: see docs/physics.md")
+    # Of two directions: the skin along the bow.
+    K_s: float = quantity(600.0, "N/m", 1.0, 1e7, SKIN)
+    R_s: float = quantity(10.0, "kg/s", 0.0, 1e4, SKIN)
+    mu_s: float = quantity(1.0, "1", 1e-3, 100.0, SKIN)
     # Critically damped: from a 1 N press back within 2 % of the way in 24 ms.
     omega_lift: float = quantity(300.0, "rad/s", 1.0, 5e3, "chosen: see decisions/0004")
 
@@ -235,6 +246,9 @@ class Quantities:
         300.0, "1/s", 0.0, 1e4, "chosen: felt under the strings behind the bridge; [Yehu]: 0"
     )
     torsion: str = choice("off", "on", source="chosen: see decisions/0022")
+    directions: str = choice("one", "two", source="chosen: see planes.py")
+    rocking: float = quantity(0.5, "1", -10.0, 10.0, "assumed: see planes.py; one was measured")
+    bounce: float = quantity(1.0, "1", 0.0, 10.0, "assumed: see planes.py; one was measured")
     body: Body = field(default_factory=measured_body)
 
     def __post_init__(self) -> None:

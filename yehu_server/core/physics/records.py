@@ -1,7 +1,7 @@
 """Types of the model's records; written by scripts/generate from layout.py.
 
-In compiled code a record of an array of layout.MODEL, layout.STATE or layout.REFINED has these
-attributes.
+In compiled code a record of an array of layout.MODEL, layout.STATE, layout.REFINED or
+planes.PLANES has these attributes.
 docs/notation.md has their symbols and units.
 """
 
@@ -227,3 +227,49 @@ class Refined(Protocol):
     r: Array
     skin_drag: Array
     twist_per_newton: Array
+
+
+class Planes(Protocol):
+    """What an instrument in two directions has besides."""
+
+    refined: Refined
+    normal: Motion
+    normal_work: Work
+    rocking: Array
+    bounce: float
+    M_n: float
+    C_n: float
+    beta_n: float
+    ghat: Tables
+    is_on: int
+    side: float
+    Y: Array
+    Psi: float
+    Psi_prev: float
+    g: float
+    eta_prev: float
+    f_ext: float
+    F_N: float
+    K_s: float
+    R_s: float
+    mu_s: float
+    s: Array
+    s_bar: Array
+    s_rate: Array
+    skin_velocity: Array
+    skin_force: Array
+    Z: Array
+    R_now: Array
+    yielding: Array
+    f_n: Array
+    rows: int
+    plane: NDArray[np.uint8]
+    string: NDArray[np.uint8]
+    contact: NDArray[np.uint8]
+    first: NDArray[np.uint16]
+    weights: Array
+    G: Array
+    D: Array
+    W: Array
+    b: Array
+    x: Array

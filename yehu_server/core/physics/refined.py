@@ -88,6 +88,7 @@ from yehu_server.core.physics.torsion import (
     twist_travel,
     yield_to_point,
 )
+from yehu_server.errors import ParameterError
 
 
 def prepare(quantities: Quantities, rate: float) -> Any:
@@ -98,19 +99,26 @@ def prepare(quantities: Quantities, rate: float) -> Any:
     Raises
     ------
     ParameterError
-        Where no torsional mode is low enough for the sample rate, or hair with a friction that is
-        hyperbolic has some width.
+        Where no torsional mode is low enough for the sample rate, hair with a friction that is
+        hyperbolic has some width, or strings move in two directions, which is ``planes.prepare``'s.
     """
+    if quantities.directions == "two":
+        raise ParameterError("directions: strings move in two only for simulate")
     bow = quantities.bow
     is_plain = bow.width == 0.0 and bow.friction != "hyperbolic" and bow.epsilon_2 == 0.0
     if is_plain and quantities.torsion == "off":
         return None
     refined = new_record(REFINED)
-    prepare_friction(refined[0], quantities)
-    prepare_width(refined[0], quantities)
-    if quantities.torsion == "on":
-        prepare_torsion(refined[0], quantities, 1.0 / rate)
+    prepare_into(refined[0], quantities, rate)
     return refined
+
+
+def prepare_into(refined: Any, quantities: Quantities, rate: float) -> None:
+    """As `prepare`, into a record at rest, of any instrument."""
+    prepare_friction(refined, quantities)
+    prepare_width(refined, quantities)
+    if quantities.torsion == "on":
+        prepare_torsion(refined, quantities, 1.0 / rate)
 
 
 @compiled
@@ -302,7 +310,7 @@ def record_points(
         finger += skin_loss(m, t, i, next_)
     for e in range(t.points):
         v_r = point_velocity(m, s, c, t, e, next_) - control[V_B]
-        if abs(control[F_N]) >= m.lift_force:
+        if abs(control[F_N]) >= m.lift_force and state.work.F_N > 0.0:
             friction += t.share * (t.f_b[e] * v_r - m.epsilon_0 * t.z_bar[e] * t.r[e])
             residual = max(residual, abs(v_r - t.v_r[e]))
             off_law += t.share * point_power_off_law(m, c, t, e, state.work.F_N, v_r)

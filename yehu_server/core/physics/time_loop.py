@@ -1,6 +1,6 @@
-"""Both kernels as functions that are compiled apart, with or without a ledger of energy.
+"""All kernels as functions that are compiled apart, with or without a ledger of energy.
 
-Playing, simulations, sweeps and tests call these, so that each kernel is compiled once, and all of
+Playing, simulations, sweeps and tests call these, so that each is compiled once, and all of
 them compute the very same samples.
 """
 
@@ -19,7 +19,7 @@ from yehu_server.compile.jit import (
     native,
 )
 from yehu_server.compile.memory import carray
-from yehu_server.core.physics import kernel, refined
+from yehu_server.core.physics import kernel, refined, two_directions
 from yehu_server.core.physics.energy import record_energy, stored_energy
 from yehu_server.core.physics.layout import (
     CONTROLS_PER_FINGER,
@@ -35,6 +35,7 @@ from yehu_server.core.physics.layout import (
     control_columns,
     probe_columns,
 )
+from yehu_server.core.physics.planes import PLANES
 from yehu_server.core.physics.records import Array, Model
 
 # Imported where something is compiled.
@@ -76,17 +77,39 @@ def advance_refined(
     refined.advance(models, states, carray(more, (1,), REFINED), rows[begin:end], out[begin:end])
 
 
+@native
+def advance_in_two_directions(
+    model: Any, state: Any, more: Any, controls: Any, probes: Any, begin: int, end: int
+) -> None:
+    """As ``two_directions.advance``, from row `begin` up to row `end`. All are pointers."""
+    models, states = carray(model, (1,), MODEL), carray(state, (1,), STATE)
+    rows, out = control_rows(models[0], controls, end), probe_rows(models[0], probes, end)
+    planes = carray(more, (1,), PLANES)
+    two_directions.advance(models, states, planes, rows[begin:end], out[begin:end])
+
+
+def has_two_directions(more: Any) -> bool:
+    """Whether ``planes.prepare`` made this for strings that move in two directions."""
+    return more is not None and more.dtype.itemsize == PLANES.itemsize
+
+
 def kernel_of(more: Any) -> int:
-    """Which kernel an instrument has, by what ``refined.prepare`` made for it: for `advance_by`.
+    """Which kernel an instrument has, by what ``planes.prepare`` made for it: for `advance_by`.
 
-    0 is the plain one. The other is named by its address, so that it is compiled with the first
-    instrument that has it, and not where none has.
+    0 is the plain one. The others are named by their addresses, so that each is compiled with the
+    first instrument that has it, and not where none has.
     """
-    return 0 if more is None else 1 if IS_PLAIN else advance_refined.address
+    if more is None:
+        return 0
+    if IS_PLAIN:
+        return 2 if has_two_directions(more) else 1
+    return (
+        advance_in_two_directions.address if has_two_directions(more) else advance_refined.address
+    )
 
 
-def _plain_call(_kernel: int, *arguments: Any) -> None:
-    advance_refined.function(*arguments)
+def _plain_call(kernel: int, *arguments: Any) -> None:
+    (advance_refined if kernel == 1 else advance_in_two_directions).function(*arguments)
 
 
 @intrinsic(plain=_plain_call)
@@ -94,7 +117,7 @@ def advance_at(
     _context: Any, _kernel: Any, _model: Any, _state: Any, _more: Any, _controls: Any, _probes: Any,
     _begin: Any, _end: Any,
 ) -> Any:  # fmt: skip
-    """Call `advance_refined` by its address."""
+    """Call one of the other kernels by its address."""
 
     def generate(_codegen: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
         word, byte = ir.IntType(64), ir.IntType(8).as_pointer()
@@ -119,8 +142,9 @@ def advance_by(
 
 @native
 def advance_with_ledger(
-    which: int, model: Any, state: Any, more: Any, controls: Any, probes: Any, ledger: Any, end: int
-) -> None:
+    which: int, directions: int, model: Any, state: Any, more: Any, controls: Any, probes: Any,
+    ledger: Any, end: int,
+) -> None:  # fmt: skip
     """As `advance_by` from the first row on, and keep the energy ledger.
 
     `ledger` is a pointer to an array [shape=(end, len(LEDGER))], which is written: NaN at a sample
@@ -131,10 +155,12 @@ def advance_with_ledger(
     ledger_rows = carray(ledger, (end, len(LEDGER)), np.float64)
     level = int(s.motion.level)
     stored = stored_energy(m, s.motion, level, (level + 2) % LEVELS)
-    stored_more = 0.0
-    if which != 0:
-        t = carray(more, (1,), REFINED)[0]
-        stored_more = refined.stored_energy(m, t, level, (level + 2) % LEVELS)
+    stored_more, now = 0.0, (level + 2) % LEVELS
+    if directions == 2:
+        d = carray(more, (1,), PLANES)[0]
+        stored_more = two_directions.stored_energy(m, s, d, level, now)
+    elif which != 0:
+        stored_more = refined.stored_energy(m, carray(more, (1,), REFINED)[0], level, now)
     for n in range(end):
         advance_by(which, model, state, more, controls, probes, n, n + 1)
         if out[n, ITERATIONS] < 0.0:  # lost, and at rest
@@ -142,9 +168,13 @@ def advance_with_ledger(
             stored, stored_more = 0.0, 0.0
             continue
         stored = record_energy(m, s.motion, s.contacts, s.work, rows[n], stored, ledger_rows[n])
-        if which != 0:
+        row, book = rows[n], ledger_rows[n]
+        if directions == 2:
+            d = carray(more, (1,), PLANES)[0]
+            stored_more = two_directions.record_planes(m, s, d, row, stored_more, book)
+        elif which != 0:
             t = carray(more, (1,), REFINED)[0]
-            stored_more = refined.record_points(m, s, t, rows[n], stored_more, ledger_rows[n])
+            stored_more = refined.record_points(m, s, t, row, stored_more, book)
 
 
 def run(
@@ -160,7 +190,7 @@ def run(
     Parameters
     ----------
     model, state, more : ndarray [shape=(1,)]
-        From ``kernel.prepare``, ``kernel.at_rest`` and ``refined.prepare``, which may be None; the
+        From ``kernel.prepare``, ``kernel.at_rest`` and ``planes.prepare``, which may be None; the
         last two are changed.
     controls, probes : ndarray [shape=(frames, columns)]
         As of ``kernel.advance``; C-contiguous.
@@ -180,9 +210,12 @@ def run(
             raise ValueError(f"{rows.shape}: expected {frames} rows of {columns} numbers")
     arrays = (model, state, model if more is None else more, controls, probes)
     places = [array.ctypes.data for array in arrays]
+    directions = 2 if has_two_directions(more) else 1
     if ledger is not None:
-        advance_with_ledger.call(which, *places, ledger.ctypes.data, frames)
+        advance_with_ledger.call(which, directions, *places, ledger.ctypes.data, frames)
     elif which == 0:
         advance.call(*places, 0, frames)
+    elif directions == 2:
+        advance_in_two_directions.call(*places, 0, frames)
     else:
         advance_refined.call(*places, 0, frames)

@@ -131,9 +131,9 @@ def any_playing(chance, fingers):
 
 def in_two_directions(quantities, chance):
     """The instrument with strings that move in two directions, on any bridge, under any skin."""
-    bow = {
-        "M_n": 10.0 ** chance.uniform(-2.5, -0.5),
-        "K_n": 10.0 ** chance.uniform(3.5, 5.0),
+    bow = {  # heavier on softer hair it sinks by centimetres, and their rounding shows at 175 kHz
+        "M_n": 10.0 ** chance.uniform(-2.5, -1.0),
+        "K_n": 10.0 ** chance.uniform(4.0, 5.0),
         "alpha_n": chance.uniform(1.1, 2.5),
         "beta_n": chance.choice([0.0, chance.uniform(0.0, 20.0)]),
     }

@@ -14,7 +14,6 @@ from __future__ import annotations
 import atexit
 import contextlib
 import ctypes
-import fcntl
 import functools
 import gc
 import importlib
@@ -244,6 +243,8 @@ def _begin(request: dict[str, Any], files: list[int], link: socket.socket) -> st
         os.setsid()
     with link:
         link.sendall(os.getpid().to_bytes(PID_BYTES, "big"))
+    import fcntl  # not of Windows
+
     os.chdir(request["folder"])
     os.environ.clear()
     os.environ.update(request["environment"])

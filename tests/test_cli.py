@@ -7,7 +7,6 @@ import io
 import itertools
 import json
 import os
-import pty
 import re
 import resource
 import shlex
@@ -178,6 +177,7 @@ def test_a_person_reads_what_came_of_it_a_program_one_object_and_who_wants_it_no
 
 def test_a_terminal_gets_a_progress_bar_and_a_pipe_its_summary(tmp_path, out):
     tune = one_note(tmp_path / "tune.mid", seconds=6.0)
+    pty = pytest.importorskip("pty", reason="Windows has no such terminals")
     ours, theirs = pty.openpty()
     process = start("render", tune, "-o", out / "x.wav", stderr=theirs)
     os.close(theirs)

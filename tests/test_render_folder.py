@@ -29,7 +29,7 @@ from yehu_server.util.sound_file import is_rendered
 pytestmark = pytest.mark.usefixtures("_forked_workers")
 
 DRY = ("--dry", "--mono", "--tail", 0)  # in little time
-ODD = ("with space.mid", "line\nbreak.mid", os.fsdecode(b"no\xffutf-8.mid"), "x/y.mid", "x/Y.kar")
+ODD = ("with space.mid", "line\nbreak.mid", "no\udcffutf-8.mid", "x/y.mid", "x/Y.kar")
 
 
 def tune(path: Path, note: int = 67, seconds: float = 0.1) -> Path:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import random
-import resource
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -400,6 +399,7 @@ def test_a_full_disk_leaves_whole_lines(tmp_path, plain):
     writer = CaptureWriter(path, beginning=plain)
     begun = path.read_bytes()
     first = json.dumps([1, 1, "ramp", "/bow/speed", 0.5, 0]) + "\n"
+    resource = pytest.importorskip("resource", reason="there is no such limit on Windows")
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(begun) + len(first) + 9, hard))
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import signal
 from collections.abc import Callable, Iterator
 
@@ -12,6 +11,7 @@ import pytest
 @pytest.fixture
 def limited() -> Iterator[Callable[[int], None]]:
     """Make the disk full: no file may grow beyond so many bytes."""
+    resource = pytest.importorskip("resource", reason="there is no such limit on Windows")
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     yield lambda most_bytes: resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, hard))

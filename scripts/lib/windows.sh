@@ -1,0 +1,98 @@
+# shellcheck shell=bash
+# Makes a Windows Python that runs under wine; sourced after setup.sh, by scripts/test.
+#
+#   windows_setup      makes it in .venv-windows, with what the checks need: requirements/dev.lock
+#   windows_python ARGS...
+#                      runs it; this checkout is on its path
+#
+# The interpreter's DLL and compiled modules are those that panda3d's wheel has for frozen programs; its
+# standard library is .venv's own, which is the same on all systems; zig links python.exe.
+
+windows=$root/.venv-windows
+debian_windows_packages=(wine wine64)
+# Those that hold everywhere; the others start processes as forks, need JACK, or have not been tried.
+windows_tests=(tests/params tests/scores tests/surfaces tests/playing tests/test_systems.py
+    tests/test_config.py tests/test_files.py)
+export WINEPREFIX=$windows/prefix WINEDEBUG=-all WINEARCH=win64
+
+windows_setup() {
+    local made_from
+    made_from="$(fingerprint) $(cksum <"$root/scripts/lib/windows.sh") $(cksum <"$root/scripts/lib/wine_complex.py")"
+    [ "$(cat "$windows/stamp" 2>/dev/null)" = "$made_from" ] && return
+    mkdir -p "$windows"
+    log=$windows/setup.log
+    system_packages "${debian_windows_packages[@]}"
+    if ! command -v wine >/dev/null; then
+        echo 'wine is not here'
+        return 77
+    fi
+    say "making a Windows Python in ${windows##*/}"
+    rm -rf "$windows"/{stamp,tools,frozen,python,prefix}
+    (windows_install) && printf '%s\n' "$made_from" >"$windows/stamp"
+}
+
+windows_install() {
+    local python=$windows/python version settings packages
+    version=$("$venv/bin/python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    PATH=$venv/bin:$PATH
+    bring_uv
+    settings=$(settings_of_pip "$venv/bin/python")
+    packages=$python/Lib/site-packages
+
+    install_packages --target "$windows/tools" ziglang pefile || return
+    install_packages --target "$windows/frozen" --no-deps --python-platform windows panda3d || return
+    mkdir -p "$python/DLLs"
+    cp -r "$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("stdlib"))')" "$python/Lib"
+    rm -rf "$python"/Lib/{site-packages,dist-packages,lib-dynload,test}
+    mkdir -p "$packages"
+    install_packages --target "$packages" --python-platform windows --require-hashes \
+        --only-binary :all: -r requirements/dev.lock || return
+    windows_libraries "$packages"
+    # Of this package, what an editable install has: its commands by their names.
+    cp -r "$venv"/lib/python*/site-packages/yehu_server-*.dist-info "$packages/"
+
+    cp "$windows"/frozen/deploy_libs/*.dll "$python/"
+    cp "$windows"/frozen/deploy_libs/{*.pyd,lib*.dll} "$python/DLLs/"
+    rm -f "$python"/api-ms-win-crt-*.dll # wine has its own
+    windows_launcher "$python" "python${version/./}" || return
+    logged "$venv/bin/python" scripts/lib/wine_complex.py "$windows"
+    rm -rf "$windows/frozen"
+}
+
+# Adds the DLLs of sound: uv prefers the wheels of these two that have none.
+windows_libraries() {
+    local name
+    for name in soundfile sounddevice; do
+        locked "$name" requirements/dev.lock
+    done >"$windows/sound.lock"
+    rm -rf "$1"/soundfile-*.dist-info "$1"/sounddevice-*.dist-info
+    logged pip_install --require-hashes --no-deps --upgrade --target "$1" --platform win_amd64 \
+        --only-binary :all: -r "$windows/sound.lock"
+}
+
+# Writes python.exe, and the file that tells it where to look: PYTHONPATH has no say then.
+windows_launcher() {
+    local zig=(env "PYTHONPATH=$windows/tools" "$venv/bin/python" -m ziglang)
+    (
+        cd "$1" || exit
+        printf '__declspec(dllimport) int Py_Main(int, wchar_t **);
+int wmain(int count, wchar_t **words) { return Py_Main(count, words); }\n' >launcher.c
+        printf 'LIBRARY %s.dll\nEXPORTS\nPy_Main\n' "$2" >launcher.def
+        logged "${zig[@]}" dlltool -m i386:x86-64 -d launcher.def -l launcher.lib
+        logged "${zig[@]}" cc -target x86_64-windows-gnu -municode -include stddef.h launcher.c launcher.lib -o python.exe
+        rm launcher.*
+        printf '%s\r\n' Lib DLLs 'Lib\site-packages' "$(windows_path "$root")" . >"$2._pth"
+    )
+}
+
+windows_path() {
+    local path=Z:$1
+    printf '%s\n' "${path//\//\\}"
+}
+
+# wine's programs need a standard input, and write to a pipe alone.
+windows_python() {
+    set -o pipefail
+    NUMBA_CACHE_DIR=$(windows_path "${windows_cache:-$windows/cache}") \
+        wine "$windows/python/python.exe" "$@" </dev/null 2>&1 | cat
+}

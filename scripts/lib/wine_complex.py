@@ -1,0 +1,101 @@
+"""Give extension modules the complex functions that Debian 12's wine lacks.
+
+    wine_complex.py FOLDER    scripts/lib/windows.sh has made it
+
+numpy imports them from Windows' C library. A DLL of another name has them instead and forwards the
+rest, and that name replaces the library's in each module. Good enough for what the tests compute.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+FOLDER = Path(sys.argv[1])
+sys.path.append(str(FOLDER / "tools"))
+LIBRARY, SHIM = b"api-ms-win-crt-math-l1-1-0.dll", b"yeh-ms-win-crt-math-l1-1-0.dll"
+REAL = {"real": "re", "imag": "im", "abs": "hypot(re, im)", "arg": "atan2(im, re)"}
+# Each by real functions of the real part and the imaginary one, which wine has.
+COMPLEX = {
+    "conj": ("re", "-im"),
+    "exp": ("exp(re) * cos(im)", "exp(re) * sin(im)"),
+    "log": ("log(hypot(re, im))", "atan2(im, re)"),
+    "sqrt": ("sqrt(hypot(re, im)) * cos(atan2(im, re) / 2)", "sqrt(hypot(re, im)) * sin(atan2(im, re) / 2)"),
+    "sin": ("sin(re) * cosh(im)", "cos(re) * sinh(im)"),
+    "cos": ("cos(re) * cosh(im)", "-sin(re) * sinh(im)"),
+    "sinh": ("sinh(re) * cos(im)", "cosh(re) * sin(im)"),
+    "cosh": ("cosh(re) * cos(im)", "sinh(re) * sin(im)"),
+    "tan": ("sin(2 * re) / (cos(2 * re) + cosh(2 * im))", "sinh(2 * im) / (cos(2 * re) + cosh(2 * im))"),
+    "tanh": ("sinh(2 * re) / (cosh(2 * re) + cos(2 * im))", "sin(2 * im) / (cosh(2 * re) + cos(2 * im))"),
+}  # fmt: skip
+POWER = """{{
+    double size = log(hypot(__real__ z, __imag__ z)), turn = atan2(__imag__ z, __real__ z);
+    double a = __real__ w * size - __imag__ w * turn, b = __real__ w * turn + __imag__ w * size;
+    {type} _Complex y;
+    __real__ y = exp(a) * cos(b);
+    __imag__ y = exp(a) * sin(b);
+    return y;
+}}"""
+
+
+def imported() -> dict[str, set[Path]]:
+    """The functions that modules take from that library, and who does."""
+    import pefile
+
+    found: dict[str, set[Path]] = {}
+    for file in sorted((FOLDER / "python/Lib/site-packages").rglob("*")):
+        if file.suffix not in (".pyd", ".dll") or LIBRARY not in file.read_bytes():
+            continue
+        pe = pefile.PE(file, fast_load=True)
+        pe.parse_data_directories([pefile.DIRECTORY_ENTRY["IMAGE_DIRECTORY_ENTRY_IMPORT"]])
+        for entry in pe.DIRECTORY_ENTRY_IMPORT:
+            if entry.dll.lower() == LIBRARY:
+                for function in entry.imports:
+                    found.setdefault(function.name.decode(), set()).add(file)
+        pe.close()
+    return found
+
+
+def written(name: str) -> str:
+    """A function in C; empty where it is not one of complex numbers."""
+    base, of = name.lstrip("_").removeprefix("c"), "double"
+    if base not in REAL and base not in COMPLEX and base != "pow":
+        base, of = base[:-1], {"f": "float", "l": "double"}.get(base[-1:], "")  # MSVC's long double
+    if not of or not name.lstrip("_").startswith("c") or name in ("cosf", "coshf"):
+        return ""
+    parts = f"double re = __real__ z, im = __imag__ z; (void)re; (void)im; {of} _Complex y;"
+    if base in REAL:
+        return f"{of} own_{name}({of} _Complex z) {{ {parts} (void)y; return {REAL[base]}; }}"
+    if base in COMPLEX:
+        re, im = COMPLEX[base]
+        parts += f" __real__ y = {re}; __imag__ y = {im}; return y;"
+        return f"{of} _Complex own_{name}({of} _Complex z) {{ {parts} }}"
+    if base == "pow":
+        return f"{of} _Complex own_{name}({of} _Complex z, {of} _Complex w) " + POWER.format(type=of)
+    return ""
+
+
+def main() -> None:
+    found = imported()
+    source = {name: text for name in found if (text := written(name))}
+    forwarded = [name for name in found if name not in source]
+    code, exports = FOLDER / "complex.c", FOLDER / "complex.def"
+    code.write_text("\n".join(["#include <math.h>", *source.values(), ""]))
+    lines = [f"LIBRARY {SHIM.decode()}", "EXPORTS"]
+    lines += [f"{name} = own_{name}" for name in source]
+    lines += [f"{name} = ucrtbase.{name}" for name in forwarded]
+    exports.write_text("\n".join([*lines, ""]))
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu", "-shared"]
+    subprocess.run(
+        [*command, "-O1", "-fno-builtin", "-o", FOLDER / "python" / SHIM.decode(), code, exports],
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(FOLDER / "tools")},
+    )
+    for file in set().union(*found.values()):
+        file.write_bytes(file.read_bytes().replace(LIBRARY, SHIM))
+
+
+if __name__ == "__main__":
+    main()

@@ -22,14 +22,23 @@ COMPLEX = {
     "conj": ("re", "-im"),
     "exp": ("exp(re) * cos(im)", "exp(re) * sin(im)"),
     "log": ("log(hypot(re, im))", "atan2(im, re)"),
-    "sqrt": ("sqrt(hypot(re, im)) * cos(atan2(im, re) / 2)", "sqrt(hypot(re, im)) * sin(atan2(im, re) / 2)"),
+    "sqrt": (
+        "sqrt(hypot(re, im)) * cos(atan2(im, re) / 2)",
+        "sqrt(hypot(re, im)) * sin(atan2(im, re) / 2)",
+    ),
     "sin": ("sin(re) * cosh(im)", "cos(re) * sinh(im)"),
     "cos": ("cos(re) * cosh(im)", "-sin(re) * sinh(im)"),
     "sinh": ("sinh(re) * cos(im)", "cosh(re) * sin(im)"),
     "cosh": ("cosh(re) * cos(im)", "sinh(re) * sin(im)"),
-    "tan": ("sin(2 * re) / (cos(2 * re) + cosh(2 * im))", "sinh(2 * im) / (cos(2 * re) + cosh(2 * im))"),
-    "tanh": ("sinh(2 * re) / (cosh(2 * re) + cos(2 * im))", "sin(2 * im) / (cosh(2 * re) + cos(2 * im))"),
-}  # fmt: skip
+    "tan": (
+        "sin(2 * re) / (cos(2 * re) + cosh(2 * im))",
+        "sinh(2 * im) / (cos(2 * re) + cosh(2 * im))",
+    ),
+    "tanh": (
+        "sinh(2 * re) / (cosh(2 * re) + cos(2 * im))",
+        "sin(2 * im) / (cosh(2 * re) + cos(2 * im))",
+    ),
+}
 POWER = """{{
     double size = log(hypot(__real__ z, __imag__ z)), turn = atan2(__imag__ z, __real__ z);
     double a = __real__ w * size - __imag__ w * turn, b = __real__ w * turn + __imag__ w * size;
@@ -73,7 +82,9 @@ def written(name: str) -> str:
         parts += f" __real__ y = {re}; __imag__ y = {im}; return y;"
         return f"{of} _Complex own_{name}({of} _Complex z) {{ {parts} }}"
     if base == "pow":
-        return f"{of} _Complex own_{name}({of} _Complex z, {of} _Complex w) " + POWER.format(type=of)
+        return f"{of} _Complex own_{name}({of} _Complex z, {of} _Complex w) " + POWER.format(
+            type=of
+        )
     return ""
 
 
@@ -88,7 +99,7 @@ def main() -> None:
     lines += [f"{name} = ucrtbase.{name}" for name in forwarded]
     exports.write_text("\n".join([*lines, ""]))
     command = [sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu", "-shared"]
-    subprocess.run(
+    subprocess.run(  # noqa: S603
         [*command, "-O1", "-fno-builtin", "-o", FOLDER / "python" / SHIM.decode(), code, exports],
         check=True,
         env={**os.environ, "PYTHONPATH": str(FOLDER / "tools")},

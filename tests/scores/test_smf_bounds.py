@@ -37,7 +37,8 @@ def test_a_path_that_is_no_file_is_refused_in_a_printable_line(tmp_path):
 
 
 @pytest.mark.skipif(
-    not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may read everything, and Windows has no modes"
+    not hasattr(os, "geteuid") or os.geteuid() == 0,
+    reason="root may read everything, and Windows has no modes",
 )
 def test_a_file_one_may_not_read_is_refused(tmp_path):
     path = tmp_path / "secret.mid"

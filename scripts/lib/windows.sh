@@ -35,6 +35,7 @@ windows_install() {
     local python=$windows/python version settings packages
     version=$("$venv/bin/python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
     PATH=$venv/bin:$PATH
+    export UV_LINK_MODE=copy # what wine needs is written into files, which uv's cache would share
     bring_uv
     settings=$(settings_of_pip "$venv/bin/python")
     packages=$python/Lib/site-packages

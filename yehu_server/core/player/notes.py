@@ -356,7 +356,7 @@ def set_loudness_balance(p: Any, c: Any) -> None:
 @compiled_exactly
 def reset_corrections(p: Any, c: Any) -> None:
     """Take back what the ear has corrected of the sounding note."""
-    p.sharper, p.pressure_factor = 0.0, 1.0
+    p.sharper, p.pressure_factor, p.nearer = 0.0, 1.0, 1.0
     if p.sounding >= 0:
         follow_bend(p, c)
         set_bow_pressure(p, c)

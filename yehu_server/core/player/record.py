@@ -91,6 +91,7 @@ PLAYER = np.dtype(
             np.int64,
         ),  # 0 while the bowing table is searched: pitch is corrected, bow pressure is not
         ("pressure_factor", np.float64),  # factor on the bow's pressure
+        ("nearer", np.float64),  # factor on the bow's place, until the string speaks
         # The fault in the last hop, and for how many hops; below 0: before a correction is judged.
         ("fault", np.int64),
         ("faults", np.int64),
@@ -187,6 +188,7 @@ def prepare_player(
     p["direction"] = UP
     p["bowing"] = DEFAULT_BOWING
     p["first_error"], p["pressure_factor"], p["corrects_pressure"] = np.nan, 1.0, 1
+    p["nearer"] = 1.0
     prepare_ear(p["ear"], rate)
     p["gesture"] = RESTING
     p["speed_variation"] = p["pressure_variation"] = p["stroke_speed_factor"] = 1.0

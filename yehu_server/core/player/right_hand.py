@@ -162,9 +162,8 @@ def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
         )
         pressure *= p.pressure_factor
     move_parameter(p, c, BOW_PRESSURE, pressure, DEFAULT_RAMP_MS)
-    move_parameter(
-        p, c, BOW_POSITION, requested_position(p) * p.bowing[DISTANCE_FACTOR], DEFAULT_RAMP_MS
-    )
+    place = requested_position(p) * p.bowing[DISTANCE_FACTOR] * p.nearer
+    move_parameter(p, c, BOW_POSITION, place, DEFAULT_RAMP_MS)
 
 
 @compiled_exactly

@@ -28,8 +28,8 @@ def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Fraction = Fracti
     """Delay what begins on an off-beat, and let the note before it last up to there.
 
     Beats are counted from `begin`. What is shorter than a unit, or follows such a note, stays even:
-    the beat is divided otherwise there. So does MuseScore, and abcjs where it is asked to swing;
-    abc2midi, in hornpipes, asks for pairs.
+    the beat is divided otherwise there. So does abcjs where it is asked to swing; abc2midi, in
+    hornpipes, asks for pairs.
     """
     voices: dict[tuple[str, str], list[RawNote]] = {}
     for note in notes:

@@ -46,6 +46,9 @@ def test_garbage_over_the_wire_neither_ends_nor_fills_the_server(live, until, ki
         listener.sync()
         if Path("/proc/self/statm").exists():
             sizes.append(resident_bytes())
+    if kind != "udp":  # what a stream has sent is handled a part at a time
+        sender.close()
+        until(lambda: not live.ports._streams, "all streams to be read to their end")
     time.sleep(0.15)  # the last bundles' time comes
     listener.send("/panic")
     listener.sync()

@@ -28,6 +28,13 @@ settings.load_profile("yehu")
 COLLECT_AFTER = (50_000, 20, 20)  # objects: Python's own 700 would look through all of them often
 
 WAITING = {"ahead", "documentation", "page", "real_time"}  # folders of tests that mostly wait
+LONGEST = {  # begun last, one of these would leave the other workers nothing to do
+    "test_documented_commands.py",
+    "test_library.py",
+    "test_renders.py",
+    "test_stream.py",
+    "test_wheel.py",
+}
 LAST_WAITS = 0.92  # of all files: when the last that waits begins
 
 
@@ -83,11 +90,12 @@ def combinations(items: list[pytest.Item]) -> list[pytest.Item]:
 
 
 def places(files: list[Path]) -> dict[Path, float]:
-    """When each file begins: those that mostly wait are spread among the others."""
+    """When each file begins: the longest first, and those that mostly wait among the others."""
     waiting = [file for file in files if file.parent.name in WAITING]
     others = [file for file in files if file.parent.name not in WAITING]
     spread = {file: LAST_WAITS * n / len(waiting) for n, file in enumerate(waiting)}
-    return {file: n / len(others) for n, file in enumerate(others)} | spread
+    first = {file: -1.0 for file in files if file.name in LONGEST}
+    return {file: n / len(others) for n, file in enumerate(others)} | spread | first
 
 
 @pytest.fixture(scope="session")

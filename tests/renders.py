@@ -34,13 +34,12 @@ SUMS = Path(__file__).with_name("renders.json")
 RENDERS = {
     "a MIDI file": "slow_air.mid",
     "another, in mono at 48 kHz": "shi_bei_jiu.mid --mono --rate 48000",
-    "an ensemble": "mo_li_hua.mid --ensemble",
+    "an ensemble": "mo_li_hua.mid --ensemble --rate 22050",
     "jianpu, dry at 96 kHz": "shi_bei_jiu.jianpu --dry --rate 96000",
     "slides and a living scale": "huo_wu.jianpu --room hall --seed 3",
     "MusicXML": "marks.musicxml --rate 48000 --normalize",
     "controllers": "bow_pressure.mid --mapping keyboard-expressive",
-    "MPE": "mpe_phrase.mid --mapping mpe --rate 22050",
-    "a section": "phrases/sakura.jianpu --set /playing/section=3 --phrasing 1",
+    "a section by MPE": "mpe_phrase.mid --mapping mpe --rate 22050 --set /playing/section=2",
     "plucked": "tunes/twinkle.jianpu --preset pizzicato --gain-db 6",
 }
 SIMULATION, CAPTURE = "a simulation", "a capture"

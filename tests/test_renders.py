@@ -18,7 +18,7 @@ from yehu_server.compile import levels
 TESTS = Path(__file__).parent
 LEVEL = levels.level()
 CC = shutil.which("cc")
-QUICK = ("MPE", "a section", "a simulation", "a capture")  # and of several rates
+QUICK = ("a section by MPE", "a simulation", "a capture")  # and of several rates
 
 
 def sums(*names: str, **settings: str) -> dict[str, str]:

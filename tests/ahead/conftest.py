@@ -22,11 +22,14 @@ def wasm() -> Path:
 
 
 @pytest.fixture(scope="session")
-def library(tmp_path_factory) -> Path:
+def library(once) -> Path:
     """A folder with the library of this level, and its header."""
-    folder = tmp_path_factory.mktemp("library")
-    build("library", folder, rates=[RATE], level=levels.level())
-    return folder
+
+    def make(folder: Path) -> Path:
+        build("library", folder, rates=[RATE], level=levels.level())
+        return folder
+
+    return once("library", make)
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import pytest
 from llvmlite import binding
 
 from yehu_server.util.checksummed import read_checksummed
@@ -44,6 +45,7 @@ def texts(folder: Path) -> dict[str, list[str]]:
     return found
 
 
+@pytest.mark.slow
 def test_llvm_is_given_the_same_code_as_by_numba_itself(tmp_path):
     for how in ("numba's own", "ours"):
         environment = {

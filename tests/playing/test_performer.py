@@ -264,7 +264,7 @@ def by_octaves(note: int) -> int:
 )
 def test_notes_out_of_range_go_where_the_policy_says(policy, expected):
     above, calibration = {"F": 65, "C": 72}, ideal()
-    for note in (0, 1, *range(50, 102), 126, 127):
+    for note in (0, 53, 64, 65, 66, 71, 72, 88, 89, 90, 101, 127):
         listener = Watched(calibration=calibration)
         player = Checked(listener, policy)
         player.write("/playing/variation", 0.0)

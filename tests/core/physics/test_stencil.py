@@ -129,10 +129,10 @@ def test_a_finger_keeps_one_node_from_the_loop_and_stays_before_the_bridge(x_f):
 
 
 @pytest.mark.parametrize("string", [0, 1], ids=["F4", "C5"])
-def test_a_bridge_moved_by_a_tenth_of_a_millimetre_moves_the_pitch_a_little(string):
+def test_a_bridge_moved_by_a_fifth_of_a_millimetre_moves_the_pitch_a_little(string):
     """Over more than a grid interval, no step and no turn: x_c is not rounded to a node."""
     rate, guess = 44100.0, (346.0, 517.0)[string]
-    bridge_x = 0.295 + 1e-4 * np.arange(75)
+    bridge_x = 0.295 + 2e-4 * np.arange(38)
     found = []
     for x_c in bridge_x:
         instrument = override(YEHU, {"bridge_x": float(x_c)})
@@ -141,8 +141,8 @@ def test_a_bridge_moved_by_a_tenth_of_a_millimetre_moves_the_pitch_a_little(stri
         run = play({}, 0.25, rate, quantities=instrument, state=state, ledger=False)
         pull = run.probes[2000:, (layout.BRIDGE_FORCE_1, layout.BRIDGE_FORCE_2)[string]]
         found.append(frequency_near(pull, rate, guess))
-    # c/2x: 0.1 mm of 0.3 m is 0.57 cents. Rounding to a node would give 0, and then 40.
+    # c/2x: 0.2 mm of 0.3 m is 1.15 cents. Rounding to a node would give 0, and then 40.
     flattening = -np.diff(cents(found, found[0]))
-    assert flattening.min() > 0.2
-    assert flattening.max() < 0.9
+    assert flattening.min() > 0.6
+    assert flattening.max() < 1.7
     assert np.ptp(cents(found, bridge_x[0] / bridge_x)) < 8.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from loudness import lufs, true_peak_db
+from measures.bs1770 import lufs, true_peak_db
 
 import yehu_server as yehu
 

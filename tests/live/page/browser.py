@@ -26,7 +26,7 @@ NODE, CHROMIUM = shutil.which("node"), shutil.which("chromium")
 # Chromium without its own interface, which is a page as well: it opens a page with half the work.
 SHELL = shutil.which("chromium-headless-shell") or CHROMIUM
 PLAYWRIGHT = WEB / "node_modules" / "playwright-core"
-LIMIT_S = 120.0
+LIMIT_S = 300.0  # on a busy machine
 
 
 def missing() -> str | None:

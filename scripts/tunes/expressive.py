@@ -53,6 +53,7 @@ MEMBERS = 15
 MASTER_RANGE, MEMBER_RANGE = 200, 4800  # cents up or down, from the MPE specification
 
 VELOCITY = {"p": 48, "": 98, "f": 116}
+MPE_SOFTER = 14  # of velocity: pressure adds to it
 OVERLAP = 16  # ticks by which a slurred note overlaps the next
 GAP = 20  # ticks of silence between two bow strokes
 TAIL = 2 * QUARTER  # from the end of the last note to the end of the track
@@ -187,8 +188,8 @@ def ticks(seconds: float, bpm: int) -> int:
     return round(seconds * QUARTER * bpm / 60)
 
 
-def strokes(note: Note, channel: int = 0) -> tuple[Event, Event]:
-    return stroke(note.pitch, note.velocity, note.start, note.end, channel)
+def strokes(note: Note, channel: int = 0, softer: int = 0) -> tuple[Event, Event]:
+    return stroke(note.pitch, note.velocity - softer, note.start, note.end, channel)
 
 
 def file(name: str, about: str, tempos: list[tuple[int, float]], events: list[Event]) -> MidiFile:
@@ -323,7 +324,7 @@ def drawn_note(note: Note, channel: int, loudness: Curve) -> Iterator[Event]:
     places = sampled(lambda tick: 36.0 + 0.45 * loudness(tick), note.start, note.until, every)
     for tick, value in places:
         yield tick, control(POSITION, value, channel)
-    yield from strokes(note, channel)
+    yield from strokes(note, channel, MPE_SOFTER)
 
 
 def zone() -> list[Event]:

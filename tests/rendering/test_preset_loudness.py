@@ -1,6 +1,8 @@
-"""Presets of bowing are about as loud as each other, so that nobody reaches for the volume."""
+"""Presets and examples are about as loud as each other, so that nobody reaches for the volume."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,12 +13,31 @@ import yehu_server as yehu
 # At 120 quarters a minute: of plucked notes, shorter ones are louder together.
 NAMES = ["G4", "A4", "B4", "D5", "E5", "D5", "B4", "A4", "G4", "C5", "E5", "G5"]
 LENGTHS = [0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 1.0]
+PRESETS = ("ordinary", "pizzicato", "sul-tasto", "tremolo", "hall")
+OTHERS = ("vibrato", "flautando", "sul-ponticello", "scratch", "dry", "study", "courtyard")
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+MAPPINGS = {
+    "slow_air.mid": "keyboard-expressive",
+    "bow_pressure.mid": "keyboard-expressive",
+    "mpe_phrase.mid": "mpe",
+}
+SCORES = sorted(
+    path.relative_to(EXAMPLES).as_posix()
+    for ending in ("mid", "musicxml", "jianpu")
+    for path in EXAMPLES.rglob(f"*.{ending}")
+)
 
 
 def phrase() -> list[yehu.Note]:
     begins = np.cumsum([0.0, *LENGTHS])
     notes = zip(NAMES, begins, LENGTHS, strict=False)
     return [yehu.Note(name, at, length, velocity=80) for name, at, length in notes]
+
+
+def check(made: yehu.Rendering) -> None:
+    assert -23.0 < lufs(made.sound, made.sample_rate) < -18.0
+    assert true_peak_db(made.sound) <= -1.0
 
 
 def test_a_sine_is_as_loud_as_the_standard_says():
@@ -26,8 +47,15 @@ def test_a_sine_is_as_loud_as_the_standard_says():
         assert lufs(np.repeat(0.1 * sine, 2, axis=1), rate) == pytest.approx(-20.0, abs=0.02)
 
 
-@pytest.mark.parametrize("preset", ["ordinary", "pizzicato", "sul-tasto", "tremolo"])
+@pytest.mark.parametrize(
+    "preset", [*PRESETS, *(pytest.param(name, marks=pytest.mark.slow) for name in OTHERS)]
+)
 def test_a_phrase_is_within_5_lu_of_loudness_with_each_preset(preset):
-    made = yehu.render(phrase(), preset=preset, phrasing=0.0)
-    assert -23.5 < lufs(made.sound, made.sample_rate) < -18.0
-    assert true_peak_db(made.sound) <= -0.9
+    check(yehu.render(phrase(), preset=preset, phrasing=0.0))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCORES)
+def test_an_example_is_within_5_lu_of_loudness(name):
+    mapping = MAPPINGS.get(name)
+    check(yehu.render(EXAMPLES / name, **({"mapping": mapping} if mapping else {})))

@@ -16,6 +16,7 @@ export const AT_FIRST = isServed ? [] : ["vibrato", "chamber"];
 const ROOM = [
   ...["level", "size", "decay", "damping", "distance", "pan"].map((name) => `/room/${name}`),
   "/body/width",
+  "/body/gain",
 ];
 
 /** @param {Page} page */

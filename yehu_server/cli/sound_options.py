@@ -143,4 +143,4 @@ def room_of(name: str, presets: Presets) -> Values:
 
 def is_of_room(address: str) -> bool:
     """Whether a parameter is one of the room, or how the body sounds in it."""
-    return address.startswith("/room/") or address == "/body/width"
+    return address.startswith("/room/") or address in ("/body/width", "/body/gain")

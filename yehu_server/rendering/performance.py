@@ -81,9 +81,9 @@ class PartPlayer:
         """Set a parameter as a mark of the score asks, or put it back."""
         if not self.player.plays(setting.channel):
             return
-        value = setting.value
-        if value is None:
-            value = self._usual(setting.address)
+        value = self._usual(setting.address)
+        if setting.value is not None:  # a gain is beside that of the room
+            value = setting.value + (value if find(setting.address).unit == "dB" else 0.0)
         if setting.is_passing:
             self._passing.add(setting.address)
             self.player.write(setting.address, value, frame=frame)

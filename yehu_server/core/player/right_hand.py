@@ -80,7 +80,7 @@ INNER_ATTACK_FRACTION, MIN_INNER_ATTACK, INNER_ATTACK_MS = 0.65, 0.4, 150.0
 # what dynamics and velocity do to the speed, and the largest factor. By ear.
 ARM_FORCE, ARM_PLACE, MAX_ARM = 0.25, -0.2, 1.2
 # Force of a pluck at medium pressure. By ear.
-PLUCK_FORCE_N, MEDIUM_PRESSURE = 1.2, 0.4
+PLUCK_FORCE_N, MEDIUM_PRESSURE = 1.0, 0.4
 MAX_PLUCK_FORCE_N = find("/pluck/force").hi
 DEFAULT_PLUCK_POSITION = find("/pluck/position").default
 

@@ -7,6 +7,7 @@ Where no sample changes, `scripts/generate` keeps the figures, under keys of the
 
 from __future__ import annotations
 
+import argparse
 import json
 import time
 from dataclasses import asdict
@@ -18,6 +19,9 @@ from yehu_server.playing.calibration_store import SHIPPED
 RATES = (44100.0, 48000.0, 96000.0)
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    ).parse_args()
     quantities = Quantities()
     shipped = {}
     for rate in RATES:

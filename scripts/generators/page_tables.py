@@ -18,6 +18,7 @@ from yehu_server.playing.mapping import load
 from yehu_server.scores.gesture import CONTROLS
 
 ROOT = Path(__file__).resolve().parents[2]
+ALL_STATUS = {row.name: row.doc for row in STATUS}
 
 
 def table(head: str, rows: Iterable[Iterable[str]]) -> str:
@@ -53,7 +54,7 @@ def parameters(place: Place) -> str:
         (
             [f"`{row.address}`", row.symbol, row.range_text, f"{row.default:g}", row.doc]
             for row in TABLE
-            if row.place is place
+            if row.place is place and not re.match("/finger/[2-9]/", row.address)
         ),
     )
 
@@ -62,7 +63,7 @@ def articulations() -> str:
     """The table of articulations, with the keys of the mapping that has key switches."""
     first = load("keyboard-articulations").key_switches or 0
     return table(
-        "number, key, name, 中文, what both hands do, from",
+        "number, key, name, 中文, what both hands do",
         (
             [
                 str(number),
@@ -70,7 +71,6 @@ def articulations() -> str:
                 f"`{row.name}`",
                 row.chinese,
                 row.about,
-                row.source,
             ]
             for number, row in enumerate(ARTICULATIONS)
         ),
@@ -206,7 +206,11 @@ TABLES: dict[str, Callable[[], str]] = {
     "parameters-of-the-engine": lambda: parameters(Place.ENGINE),
     "status": lambda: table("name, what", ([f"`{row.name}`", row.doc] for row in STATUS)),
     "status-of-a-part": lambda: table(
-        "of a part, what", ([f"`{row.name}`", row.doc] for row in PART_STATUS)
+        "of a part, what",
+        (
+            [f"`{row.name}`", row.doc if ALL_STATUS.get(row.name) != row.doc else "as above"]
+            for row in PART_STATUS
+        ),
     ),
     "articulations": articulations,
     "ratios": ratios,

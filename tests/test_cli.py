@@ -147,6 +147,21 @@ def test_a_call_that_is_not_complete_gets_one_line(subtests, refused):
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="no terminal is hung up here")
+def test_a_wrong_word_gets_a_near_one_and_the_hint_names_the_command_as_called(
+    subtests, refused, monkeypatch
+):
+    monkeypatch.setenv("YEHU_COMMAND", "scripts/yehu")
+    for words, message in {
+        ("rendr", "a.mid"): "did you mean render? (see scripts/yehu --help)",
+        ("presets", "lst"): "did you mean list? (see scripts/yehu presets --help)",
+        ("render", "a.mid", "-o", "a.wav", "--rom=hall"): "no option --rom; did you mean --room? "
+        "(see scripts/yehu render --help)",
+        ("devices", "all"): "scripts/yehu devices: all: one argument too many",
+    }.items():
+        with subtests.test(words):
+            assert message in refused(*words)
+
+
 def test_behind_nohup_a_command_outlives_its_terminal(command):
     for before, is_handled in ((signal.SIG_IGN, False), (signal.SIG_DFL, True)):
         signal.signal(signal.SIGHUP, before)

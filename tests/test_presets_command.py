@@ -102,6 +102,7 @@ def test_a_program_change_of_a_file_acts_only_if_asked_for(rendered):
 
 def test_what_is_set_wins_over_a_preset(rendered):
     words = ("--set", "/playing/tremolo=0", "--set", "/playing/attack=40")
+    words += ("--set", "/playing/speed=0.2")
     assert rendered("--preset", "tremolo", *words)[0] == rendered()[0]
     programs = rendered("--programs", *words, programs=(6,))[0]
     assert programs == rendered()[0]

@@ -1,4 +1,4 @@
-"""Make a data set of labelled sounds for machine learning, drawn at random by a description.
+"""Make a data set of labelled sounds for machine learning, drawn at random as a description says.
 
 Each sound comes with its forces, positions and velocities, and with the regime of the string.
 

@@ -9,8 +9,8 @@ find NAME.practice.json by themselves beside an instrument file NAME.toml.
   yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
   yehu-server render tune.mid -o tune.wav --practice mine.json
 
-It takes a quarter of an hour or more on two cores. It goes on from the table beside the instrument
-file, or from the shipped one. The yehu comes practised.
+It takes a quarter of an hour or more on two cores. It begins with the table beside the instrument
+file, or with the shipped one. The yehu itself is practised already.
 """
 
 from __future__ import annotations

@@ -21,6 +21,7 @@ from yehu_server.errors import YehuError
 from yehu_server.system.processes import on_termination
 from yehu_server.util import __version__
 from yehu_server.util.files import error_reason
+from yehu_server.util.hints import command_name
 
 OF_ALL: tuple[list[str], ...] = (
     [],
@@ -81,7 +82,7 @@ def _parser(words: Sequence[str] = (), *, whole: bool = True) -> Parser:
     all of them else, and of those of OF_ALL their names, unless it is to be `whole`.
     """
     parser = Parser(
-        prog="yehu-server",
+        prog=command_name(),
         description="A virtual yehu, the Chinese two-stringed fiddle: its physics, simulated.",
         formatter_class=HelpFormatter,
         allow_abbrev=False,

@@ -14,9 +14,10 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import warn
-from yehu_server.errors import one_line
+from yehu_server.errors import did_you_mean, one_line
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
 from yehu_server.util.files import check_free, check_target, replace_any, shipped_folder
+from yehu_server.util.hints import command_name
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
@@ -32,6 +33,10 @@ class HelpFormatter(RawDescriptionRichHelpFormatter):
     )
 
 
+# What argparse says of a wrong choice; from Python 3.12 on without quotation marks.
+CHOICE = re.compile(r"argument (.*?): invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
+
+
 def add_options(group: Any, table: str, /, **details: Any) -> None:
     """Add options to a parser, or a group of its options, from a table of usage and help.
 
@@ -43,6 +48,7 @@ def add_options(group: Any, table: str, /, **details: Any) -> None:
     for row in re.split(r"\n(?=\S)", inspect.cleandoc(table)):
         usage, _, text = " ".join(row.split()).partition(": ")
         *names, value = usage.split()
+        text = text.replace("yehu-server ", f"{command_name()} ")
         name = usage.rpartition("--")[2].split()[0].replace("-", "_")
         words = details.pop(name, {})
         words = {"help": text, **(words if isinstance(words, dict) else {"type": words})}
@@ -88,7 +94,7 @@ def cluster_of(
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that reports a wrong call in one line, without the usage."""
+    """A parser that reports a wrong call in one line, without the usage, with a near word."""
 
     def __init__(self, *args: Any, **words: Any) -> None:
         super().__init__(*args, **words)
@@ -117,6 +123,11 @@ class Parser(argparse.ArgumentParser):
         if action is not None:
             return action.parse_known_args(args[1:], namespace)
         known: tuple[argparse.Namespace, list[str]] = super().parse_known_args(args, namespace)
+        if known[1]:
+            word = known[1][0].partition("=")[0]
+            is_option = word.startswith("-")
+            near = did_you_mean(word, self.options) if is_option else ""
+            self.error(f"no option {word}{near}" if is_option else f"{word}: one argument too many")
         return known
 
     @property
@@ -126,6 +137,10 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and exit with code 2."""
+        if wrong := CHOICE.fullmatch(message):
+            known = re.findall(r"[^\s',]+", wrong[3])
+            near = did_you_mean(wrong[2], known)
+            message = f"{wrong[1]}: '{wrong[2]}' is none of {', '.join(known)}{near}"
         self.exit(2, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
 
 
@@ -141,12 +156,15 @@ def add_command(
     `about`: its description and, from the first example on, what stands at the end of its help: the
     docstring of its module. Pages named there, such as docs/osc.md, get their full path.
     """
-    name, _, text = usage.partition(": ")
+    name, _, short = usage.partition(": ")
     description, example, more = (about or "").partition("\n\n  yehu-server ")
     epilog = f"examples:{example[1:]}{more}" if example else ""
+    description, epilog = (
+        text.replace("yehu-server ", f"{command_name()} ") for text in (description, epilog)
+    )
     parser = commands.add_parser(
         name,
-        help=text,
+        help=short,
         description=" ".join(description.split()),
         epilog=epilog.replace("docs/", f"{shipped_folder('docs')}/"),
         formatter_class=HelpFormatter,

@@ -1,7 +1,7 @@
 """Compile the instrument ahead of time, so that it plays without Python.
 
-It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compiler; zig has both, for
-where the system has none (pip install ziglang).
+It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compiler; zig brings both
+(pip install ziglang).
 
   yehu-server build wasm -o page
   yehu-server build library -o lib --rate 48000 96000 --level x86-64-v3

@@ -3,8 +3,8 @@
   yehu-server devices
   yehu-server serve --audio-device JACK --midi-in keystep
 
-serve plays on the first output, and follows the first input. A host API's name alone, such as
-JACK, chooses the first of its devices; any words that no other device has choose that one.
+serve plays on the first output, and follows the first input. To choose another, give words of its
+name, or a host API alone, such as JACK, for the first of its devices.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Let the control that you move next move a parameter of a running server, too.
+"""Bind the next control that you move to a parameter of a running server.
 
   yehu-server learn /playing/vibrato
   yehu-server learn --soft /playing/pressure /playing/bow_position
@@ -41,7 +41,7 @@ def add_to(commands: Any) -> None:
         --soft: soft take-over: the knob has no effect until it reaches the present value
         --only: take the parameter away from all other controls, until --forget
         --forget: remove what was learned for these parameters, and give back what it took
-        --part N: of several players, the one who moves the control, counted from 1 (default: 1)
+        --part N: the part (player) whose parameter it is, counted from 1 (default: 1)
         """,
         parameters={"nargs": "*"},
         part=positive,

@@ -59,9 +59,9 @@ def add_to(commands: Any) -> None:
     )
     add_server(show)
     check = add_action(actions, "check", _check, "check files and report all errors")
-    check.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    check.add_argument("files", nargs="+", type=Path, metavar="FILE", help="mappings of yours")
     convert = add_action(
-        actions, "convert", _convert, "write a mapping as a file in canonical form"
+        actions, "convert", _convert, "write a mapping as a file, in the present format"
     )
     add_options(
         convert,

@@ -60,8 +60,8 @@ def add_to(commands: Any) -> None:
         f"""
         --port N: port to show it at; 0: a free one (default: {PORT})
         --open: open it in the browser
-        --share-url URL: the address of the same page for everybody, which links to performances
-            name; without it they name the page where they were made
+        --share-url URL: the address at which everybody can open this page, for links to
+            performances (default: the address where a link is made)
         """,
         port={"type": port, "default": PORT},
         share_url={"type": web_address},

@@ -30,7 +30,7 @@ def add_playing(group: Any) -> None:
             NAME.practice.json beside an instrument file NAME.toml, else the shipped one)
         --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1; may
             be repeated
-        --open-strings: when C5 (of a yehu) is played on the open outer string, and not stopped on
+        --open-strings: when to play C5 (of a yehu) on the open outer string instead of stopping
             the inner one (default: always)
         --seed N: seed of the random variation of the player, 0 to 65535 (default: 0)
         """,
@@ -50,8 +50,8 @@ def add_tables(group: Any) -> None:
         --mpe: start with one MPE zone of 15 member channels; without --mapping, use the mapping
             named mpe
         --preset NAME: sound to start with: the name of a preset, or a file; several with a plus,
-            such as sul-tasto+hall (default: {FIRST_LIVE} for serve without --mapping and --mpe,
-            else none; see yehu-server presets)
+            such as sul-tasto+hall (default: none; of serve without --mapping and --mpe,
+            {FIRST_LIVE}); yehu-server presets list names all
         --programs: let MIDI program changes select presets (default: they are ignored)
         """,
     )

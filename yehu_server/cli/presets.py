@@ -32,7 +32,7 @@ def add_to(commands: Any) -> None:
         add_presets_folder(action)
         add_options(action, "--json: print one JSON object")
     check = add_action(actions, "check", _check, "check files and report all errors")
-    check.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    check.add_argument("files", nargs="+", type=Path, metavar="FILE", help="presets of yours")
 
 
 def _list(arguments: argparse.Namespace) -> int:

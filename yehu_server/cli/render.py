@@ -9,10 +9,10 @@
   yehu-server render songs -o sounds --dask tcp://10.0.0.1:8786
   yehu-server render - -o - --format raw < tune.mid > tune.f32
 
-A folder is rendered on all cores, and only what is not up to date: docs/folders.md says more, and
-docs/cluster.md of clusters.
+A folder is rendered on all cores; what is up to date is left (docs/folders.md). docs/cluster.md
+is about clusters.
 Ensemble files are described in docs/ensemble.md.
-What becomes of damaged MIDI files is described in docs/midi_files.md.
+docs/midi_files.md describes how damaged MIDI files are read.
 """
 
 from __future__ import annotations
@@ -57,14 +57,15 @@ def add_to(commands: Any) -> None:
         f"""
         --format: file format (default: by the ending of OUT); raw: samples alone, for -o -
         --subtype: sample format (default: 24 bits; float for raw)
-        --channel N: play only this MIDI channel, 1 to 16; may be repeated (default: all but 10)
+        --channel N: play only this MIDI channel, 1 to 16; may be repeated (default: those of the
+            part that plays, but 10)
         --part NAME ...: play this part, by its name, the beginning of its name, or its number; may
-            be repeated (default: the part that carries the tune; of MIDI files whose tracks take
-            turns, all)
+            be repeated (default: the part that carries the tune; all, where tracks of a MIDI file
+            take turns)
         --phrasing SHARE: how much the player shapes plain notes (phrases, accents, slurs, vibrato,
             slides), 0 to 1; marks in the score stay; 0 plays exactly what is written (default: 0.5)
         --rubato SHARE: tempo flexibility within phrases and at the end, 0 to 1; 0 is strict time
-            (default: as --phrasing)
+            (default: the value of --phrasing)
         --song N: play only the N-th song of each file (default: all songs, one after another)
         --strict: refuse damaged MIDI files, and scores with marks that are not understood, with
             exit code 1 (default: warn)

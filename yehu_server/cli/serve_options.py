@@ -36,15 +36,15 @@ def add_arguments(parser: Parser) -> None:
     add_options(
         parser.add_argument_group("audio"),
         """
-        --audio-device NAME: an output by words of its name (see yehu-server devices), a host API
-            alone, such as JACK, for its default output, or null for silence (default: JACK's output
-            where JACK runs, else the system's)
+        --audio-device NAME: the audio output: words of its name (yehu-server devices lists them);
+            a host API alone, such as JACK, for its default output; null for silence (default:
+            JACK's output where JACK runs, else the system's)
         --rate HZ: sample rate (default: the device's)
         --blocksize FRAMES: frames in a block; JACK keeps its own period (default: 128)
         --latency low|high|SECONDS: latency to request from the device (default: low)
         --channels N: number of output channels, left and right in turn; 1: mono (default: 2, or as
             many as the device has)
-        --follow NAME: follow a voice at an audio input, and play what it sings; NAME as of
+        --follow NAME: follow a voice at an audio input, and play what it sings; NAME as for
             --audio-device (default: JACK's input where JACK runs, else the system's)
         --follow-transpose SEMITONES: transpose the voice (default: by octaves, so that the first
             note is in the lower half of the range)
@@ -123,7 +123,7 @@ def add_arguments(parser: Parser) -> None:
         --record OUT: record everything to a new WAV or FLAC file
         --record-from start|first-note: begin --record at once (start, the default) or with the
             first sound
-        --capture FILE: write every event to a new file, for yehu-server replay to render
+        --capture FILE: write every event to a new file, which yehu-server replay renders
         --overwrite: let --record and --capture replace existing files
         --recordings FOLDER: folder for recordings begun by {PREFIX}/record/start (default:
             yehu-server in your music folder)

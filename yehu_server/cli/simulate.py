@@ -27,7 +27,7 @@ def add_to(commands: Any) -> None:
         """
         gesture GESTURE.json: a gesture file: motion of bow and finger
         --energy: also keep the energy ledger
-        --strings EVERY: keep the shapes of the strings every EVERY samples (default: never)
+        --strings EVERY: keep the shapes of the strings, once in EVERY samples (default: never)
         -o --output OUT.npz: the arrays to write
         """,
         gesture=Path,

@@ -60,8 +60,8 @@ def add_stage(parser: Any) -> None:
     add_options(
         group,
         """
-        --ensemble FILE.toml: give each MIDI channel but 10, or each part of a score, a yehu of its
-            own, up to 16; a file says who plays what and sits where
+        --ensemble FILE.toml: play each MIDI channel but 10, or each part of a score, on a yehu of
+            its own, up to 16; FILE.toml says who plays what, and where they sit
         --by: with --ensemble: each channel or each track is a part (default: channel)
         --stems FOLDER: also write a file for each part, and one for the room: 01-NAME.wav ...
             room.wav

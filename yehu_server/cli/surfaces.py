@@ -31,8 +31,8 @@ def add_to(commands: Any) -> None:
         f"""
         --server HOST:PORT: address that Max, Pd and Open Stage Control send to (default:
             {format_address(*OSC_ADDRESS)}); in TouchOSC it is set by hand
-        --part N: for part N of a server with several (serve --parts): the files speak to
-            /yehu/part/N, and have -part-N in their names
+        --part N: for part N of a server (serve --parts): the files send to /yehu/part/N, and have
+            -part-N in their names
         --only NAME ...: write only this file, such as yehu.pd; may be repeated
         --check: write nothing; exit with code 1 where a file is not up to date
         """,

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from yehu_server.errors import DeviceError
+from yehu_server.util.hints import command_name
 
 OUTPUT, INPUT = "output", "input"  # kinds
 CLIENTS = {OUTPUT: b"yehu-server", INPUT: b"yehu-server voice"}  # their names in JACK, kept for it
@@ -98,7 +99,9 @@ def devices(sounddevice: Any, kind: str = OUTPUT) -> list[AudioDevice]:
 
 NOTHING = "there is no audio {}"
 NO_OUTPUT = NOTHING.format(OUTPUT)
-ADVICE = "connect one and start its sound server, or listen in the page: serve --open"
+ADVICE = (
+    f"connect one and start its sound server, or listen in the page: {command_name()} serve --open"
+)
 
 
 def choose(devices: Sequence[AudioDevice], wanted: str | None, kind: str = OUTPUT) -> AudioDevice:

@@ -83,7 +83,7 @@ def open_system(api: str | None) -> MidiSystem:
             module = importlib.import_module(f"{__package__}.{library(name)[0]}")
             opened: MidiSystem = module.System(name)
         except (DeviceError, ImportError, OSError) as error:  # OSError: a library of the system's
-            problems.append(str(error).strip())
+            problems.append(str(error).strip(" ."))
         else:
             return opened
     raise DeviceError("; ".join(problems) or "no MIDI system of this platform is known")

@@ -115,7 +115,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
     if server.output.state.problem and arguments.audio_device != "null":
         report(f"{server.output.state.problem}: playing on a silent clock")
         if server.output.state.problem == NO_OUTPUT:
-            report(ADVICE)
+            report("listen in the page, which opens" if arguments.open else ADVICE)
     mappings = [part.playing.mapping for part in options.parts]
     for mapping in {each.name: each for each in mappings}.values():
         if is_own(mapping):

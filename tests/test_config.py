@@ -98,7 +98,7 @@ def test_a_wrong_option_is_one_clear_line(subtests, refused):
         (["--osc", "127.0.0.1:99999"], "expected HOST:PORT"),
         (["--osc-allow", "everyone"], "is not a network"),
         (["--set", "/no/such=1"], "unknown parameter"),
-        (["--midi-api", ELSEWHERE], f"--midi-api {ELSEWHERE}: is not of this system; there are: "),
+        (["--midi-api", ELSEWHERE], f"--midi-api {ELSEWHERE}: not available here; there are: "),
         (["--mapping", "none"], "no mapping 'none'"),
         (["--config", "/no/such/file.toml"], "No such file"),
         (["--latency", "soon"], "'soon' is not a number"),

@@ -51,7 +51,7 @@ def average_taps(taps: Sequence[Tap]) -> Averaged:
     good = [tap for tap in taps if not tap.faults]
     if not good:
         raise MeasurementError(
-            f"no tap without fault: {taps[0].name}: {' and '.join(taps[0].faults)}"
+            f"every tap has a fault: {taps[0].name}: {' and '.join(taps[0].faults)}"
         )
     if len(good) < ENOUGH_TAPS:
         count = "one tap" if len(good) == 1 else f"{len(good)} taps"

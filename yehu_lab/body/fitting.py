@@ -127,7 +127,9 @@ def _in_band(curve: Curve | None, band: tuple[float, float], what: str) -> Curve
         return None
     lo, hi = band
     if not 0.0 < lo < hi:
-        raise MeasurementError(f"band: {lo:g} to {hi:g} Hz is none")
+        raise MeasurementError(
+            f"band: expected a lower and a higher frequency, got {lo:g} to {hi:g} Hz"
+        )
     found = curve.within(lo, hi)
     if len(found.values) < 50:
         raise MeasurementError(

@@ -87,10 +87,10 @@ def read_distribution(entry: Any) -> Distribution:
     if names == set(NORMAL):
         mean, deviation, lo, hi = (table.need(name, number) for name in NORMAL)
         if not (deviation > 0.0 and lo < hi):
-            raise ParameterError("deviation above 0, and from below to")
+            raise ParameterError("deviation must be above 0, and from below to")
         normal = NormalDist(mean, deviation)
         if not normal.cdf(hi) > normal.cdf(lo):
-            raise ParameterError("nothing is drawn so far from the mean")
+            raise ParameterError("from and to are too far from the mean")
         return Distribution(lo, hi, partial(_normal, normal, lo, hi), is_whole=False)
     if not {"from", "to"} <= names <= {"from", "to", "spacing"}:
         raise ParameterError(
@@ -102,9 +102,9 @@ def read_distribution(entry: Any) -> Distribution:
     if lo > hi:
         raise ParameterError("from is above to")
     if spacing == "whole" and (lo != int(lo) or hi != int(hi)):
-        raise ParameterError("from and to are whole numbers")
+        raise ParameterError("from and to must be whole numbers")
     if spacing == "ratio" and lo <= 0.0:
-        raise ParameterError("by ratio, from is above 0")
+        raise ParameterError("by ratio, from must be above 0")
     is_whole = spacing == "whole" or lo == hi == int(lo)
     return Distribution(lo, hi, partial(SPACINGS[spacing], lo, hi), is_whole)
 
@@ -112,14 +112,14 @@ def read_distribution(entry: Any) -> Distribution:
 def _weights(value: Any, count: int) -> tuple[float, ...]:
     weights = numbers(value)
     if len(weights) != count:
-        raise ParameterError("as many as are to choose from")
+        raise ParameterError(f"expected {count} weights, one for each choice")
     return shares_of(weights)
 
 
 def shares_of(weights: Sequence[float]) -> tuple[float, ...]:
     """Sums of weights, the last of which is 1. Raises ParameterError where they are no weights."""
     if min(weights) < 0.0 or not sum(weights) > 0.0:
-        raise ParameterError("numbers from 0, not all of them 0")
+        raise ParameterError("weights must be 0 or more, and not all 0")
     return tuple(total / sum(weights) for total in itertools.accumulate(weights))
 
 

@@ -239,7 +239,7 @@ def prepare_folder(study: Study, folder: Path, *, overwrite: bool = False) -> No
     OutputError where the folder has signals of another sweep and `overwrite` is false.
     """
     if study.levels:
-        raise ParameterError("--signals: a study that is refined keeps none")
+        raise ParameterError("--signals: a study with [refine] keeps no signals")
     count = int(np.prod(study.shape, dtype=np.int64))
     if count > MAX_FILES:
         raise ParameterError(f"--signals: {count} strokes are more than {MAX_FILES}")

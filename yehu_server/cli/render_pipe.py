@@ -45,7 +45,7 @@ def piped_in(arguments: argparse.Namespace) -> Iterator[None]:
     if len(asked) > 1:
         raise ParameterError("standard input can be read once only")
     if sys.stdin is None or sys.stdin.isatty():
-        raise ScoreError("standard input is a terminal; lead a score to it")
+        raise ScoreError("standard input is a terminal; pipe a score into it")
     with tempfile.TemporaryDirectory(prefix="yehu-server-") as folder:
         path = Path(folder) / STDIN
         size = 0

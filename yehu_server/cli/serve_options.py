@@ -214,7 +214,7 @@ def _page_of(arguments: argparse.Namespace) -> Any:
     has_page = arguments.lan or arguments.open or requested is not None or arguments.http != "none"
     if arguments.no_panel or not has_page:
         if arguments.lan or arguments.open:
-            raise ParameterError("--no-panel: there is no page to open")
+            raise ParameterError("--open and --lan need the page: leave out --no-panel")
         return None
     http = "" if arguments.http == "none" else arguments.http
     host, beside = parse_address(http, *HTTP_ADDRESS)

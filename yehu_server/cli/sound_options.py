@@ -90,7 +90,7 @@ def check_sound(arguments: argparse.Namespace) -> None:
 
     check_rate(arguments.rate)
     if arguments.dry and arguments.room is not None:
-        raise ParameterError("--dry has no room: leave out --room")
+        raise ParameterError("--dry means no room: leave out --room")
 
 
 def check_stage(arguments: argparse.Namespace) -> None:

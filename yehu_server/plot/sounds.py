@@ -150,7 +150,7 @@ def sound_of(sound: Any, sample_rate: float | None = None) -> tuple[Array, float
     if not is_sound:
         raise ParameterError(f"expected a sound: an array or a result, not {type(sound).__name__}")
     if not isinstance(sample_rate, Real) or not sample_rate > 0.0:
-        raise ParameterError("sample_rate: of an array of sound, it has to be given (Hz)")
+        raise ParameterError("sample_rate: an array of sound needs one (Hz)")
     if samples.dtype.kind == "i":
         raise ParameterError("expected a sound with full scale 1, not one of integers")
     return samples, float(sample_rate)

@@ -90,7 +90,7 @@ def check_pipe(format_name: str) -> None:
     if format_name not in FORMATS:
         raise OutputError(f"a {format_name} file cannot be piped; use --format wav or raw")
     if sys.stdout is not None and sys.stdout.isatty():
-        raise OutputError("standard output is a terminal; lead it to a file or a program")
+        raise OutputError("standard output is a terminal; redirect it to a file or a program")
 
 
 @contextlib.contextmanager

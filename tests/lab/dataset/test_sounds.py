@@ -82,7 +82,7 @@ WRONG = {
     "keep.every: expected a whole number": {"keep": {"every": 0}},
     "split: a/b: is not a plain folder name": {"split": {"a/b": 1}},
     "split: names that differ": {"split": {"a": 1, "A": 1}},
-    "split: numbers from 0": {"split": {"a": 0}},
+    "split: weights must be 0 or more": {"split": {"a": 0}},
     "instrument": {"instrument": {"x": 1}},
     "rate": {"sample_rate": 1},
     "/playing/x": {"kind": "notes", "draw": {"/playing/x": 1}},

@@ -51,7 +51,7 @@ def check_api(api: str | None) -> None:
     """Refuse (ParameterError) a MIDI system that this platform does not have."""
     if api is not None and api not in systems():
         there = ", ".join(systems()) or "none"
-        raise ParameterError(f"--midi-api {api}: is not of this system; there are: {there}")
+        raise ParameterError(f"--midi-api {api}: not available here; there are: {there}")
 
 
 def library(api: str) -> tuple[str, str]:

@@ -113,7 +113,7 @@ class OscHandler:
         if ahead_s > FAR_S and peer.host not in self._far and len(self._far) < MAX_FAR:
             self._far.add(peer.host)
             log.warning(
-                "OSC: time tags of %s are %.0f s ahead, and heard then: is its clock right?",
+                "OSC: time tags of %s are %.0f s ahead: is its clock right?",
                 peer.host,
                 ahead_s,
             )

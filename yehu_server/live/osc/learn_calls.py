@@ -113,7 +113,7 @@ class LearnCalls(GroupCalls):
         plain = address.removeprefix(PREFIX)
         group, own = split_group(plain)
         if group not in ("", self._group):
-            raise ParameterError(f"{address}: is of another part; see {PREFIX}{group}/learn")
+            raise ParameterError(f"{address}: belongs to another part; send {PREFIX}{group}/learn")
         own = own.removesuffix(UNIT)
         check_own(self._group, own)
         return settable_param(own, what).address

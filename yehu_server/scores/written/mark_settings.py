@@ -36,7 +36,7 @@ SNAP = 0.8  # pressure: a pluck twice as hard as usual
 # The bow's places are those of the presets.
 PLACES: Mapping[str, Values] = {
     "sul-ponticello": {BOW_POSITION: 0.09, SPEED: 0.16},
-    "sul-tasto": {BOW_POSITION: 0.18, SPEED: 0.14},
+    "sul-tasto": {BOW_POSITION: 0.18, SPEED: 0.155},
     "flautando": {PRESSURE: 0.2, SPEED: 0.24},
 }
 CRISP: Mapping[str, Values] = {

@@ -59,3 +59,18 @@ def test_a_phrase_is_within_5_lu_of_loudness_with_each_preset(preset):
 def test_an_example_is_within_5_lu_of_loudness(name):
     mapping = MAPPINGS.get(name)
     check(yehu.render(EXAMPLES / name, **({"mapping": mapping} if mapping else {})))
+
+
+def test_plucks_that_a_score_asks_for_are_as_much_softer_in_a_hall_as_elsewhere(tmp_path):
+    score = tmp_path / "pizz.jianpu"
+    score.write_text('1=F 4=120\n1 1 1 1 | 1 ^"pizz." 1 1 1 |\n', encoding="utf-8")
+
+    def below_bowed_db(room: str) -> float:
+        made = yehu.render(score, preset=room, settings={"/room/level": 0.0}, phrasing=0.0)
+        bowed, plucked = (
+            np.abs(made.sound[round(begin * made.sample_rate) :][: 2 * 44100]).max()
+            for begin in (0.0, 2.05)
+        )
+        return float(20.0 * np.log10(bowed / plucked))
+
+    assert below_bowed_db("hall") == pytest.approx(below_bowed_db("chamber"), abs=1.0)

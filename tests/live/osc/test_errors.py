@@ -119,7 +119,7 @@ def test_a_wrong_message_is_logged_once_for_each_address_and_few_a_minute(still,
     still.take(wire.message("/yehu/note", 67.0))
     assert still.services.said == [
         "OSC from peer:1: /yehu/nots: unknown address; did you mean /yehu/note?",
-        "OSC from peer:1: /yehu/note: expected 2 arguments, got 1",
+        "OSC from peer:1: /yehu/note: expected 2 arguments, got 1 (NOTE VELOCITY)",
     ]
     for number in range(100):
         still.take(wire.message(f"/yehu/{number}", 1.0))

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
-from yehu_server.live.osc.call import Argument, Call
+from yehu_server.errors import RefusedError
+from yehu_server.live.osc.call import Argument, Call, CountError, Request
 from yehu_server.live.osc.context import Act, CallContext, GroupCalls
 from yehu_server.live.osc.learn_calls import LearnCalls
 from yehu_server.live.osc.playing_calls import PartCalls
@@ -37,10 +38,19 @@ def acts(group: str, context: CallContext) -> dict[str, Act]:
         found[param.address + UNIT] = partial(part.set_unit, param=param)
     for kind, row in _ROWS:
         if not (group and row.is_for_all):
-            act = partial(row.act, carriers[kind])
+            act = partial(_carry_out, row, carriers[kind])
             waiting = partial(carriers[kind].after_writes, row.address, act)
             found[row.address] = waiting if row.reads_files else act
     return {group + address: act for address, act in found.items()}
+
+
+def _carry_out(row: Call, carrier: GroupCalls, request: Request) -> None:
+    """Carry out a call; of another number of arguments the error names those that it has."""
+    try:
+        row.act(carrier, request)
+    except CountError as error:
+        names = " ".join(argument.name.upper() for argument in row.arguments)
+        raise RefusedError(f"{error} ({names})" if names else str(error)) from None
 
 
 def preset_calls(names: tuple[str, ...], group: str = FIRST) -> list[Call]:

@@ -12,6 +12,10 @@ from yehu_server.live.osc.peers import Peer
 from yehu_server.params.table import find
 
 
+class CountError(RefusedError):
+    """Another number of arguments than a call has."""
+
+
 @dataclass(frozen=True)
 class Request:
     """A message to carry out: its arguments, its sender, and the frame at which it takes effect."""
@@ -29,8 +33,8 @@ class Request:
     def numbers(self, least: int, most: int | None = None) -> list[float]:
         """The arguments as finite numbers.
 
-        Raises RefusedError where their count is not within `least` to `most` (by default `least`),
-        or one is none.
+        Raises CountError where their count is not within `least` to `most` (by default `least`),
+        RefusedError where one is none.
         """
         most = least if most is None else most
         if least == 0 and list(self.arguments) == [None]:  # so OSCQuery clients send none
@@ -39,7 +43,7 @@ class Request:
         if not least <= count <= most:
             wanted = f"{least}" if least == most else f"{least} to {most}"
             plural = "" if wanted == "1" else "s"
-            raise RefusedError(f"expected {wanted} argument{plural}, got {count}")
+            raise CountError(f"expected {wanted} argument{plural}, got {count}")
         return [_number(argument) for argument in self.arguments]
 
     @property
@@ -48,9 +52,9 @@ class Request:
         return list(self.arguments) == [0]
 
     def word(self) -> str:
-        """The only argument, a string; raises RefusedError where there is anything else."""
+        """The only argument, a string; raises CountError where there is anything else."""
         if len(self.arguments) != 1 or not isinstance(self.arguments[0], str):
-            raise RefusedError("expected one string")
+            raise CountError("expected one string")
         return self.arguments[0]
 
     def word_and_flags(self, most: int) -> list[Any]:

@@ -44,8 +44,12 @@ def test_an_index_leads_to_every_page_beside_it(index):
     assert {name for name in beside if f"]({name})" not in page_named(index).text} == set()
 
 
-def test_the_readme_is_short_enough_to_finish():
+def test_what_is_read_is_short_enough_to_finish():
     assert len(page_named("README.md").text.split()) <= 900
+    assert len((ROOT / "CHANGELOG.md").read_text("utf-8").splitlines()) <= 60
+    rows = re.compile(r"^\|[-|]+$|\|", re.MULTILINE)  # bars of tables are no words
+    docs = [page for page in PAGES if page.name.startswith("docs/")]
+    assert sum(len(rows.sub(" ", page.text).split()) for page in docs) <= 55_000
 
 
 def test_every_call_is_described():

@@ -395,11 +395,11 @@ def test_a_file_of_version_1_sounds_as_its_ramps_do_from_its_own_values(tmp_path
 
 
 def test_a_full_disk_leaves_whole_lines(tmp_path, plain):
+    resource = pytest.importorskip("resource", reason="there is no such limit on Windows")
     path = tmp_path / "c"
     writer = CaptureWriter(path, beginning=plain)
     begun = path.read_bytes()
     first = json.dumps([1, 1, "ramp", "/bow/speed", 0.5, 0]) + "\n"
-    resource = pytest.importorskip("resource", reason="there is no such limit on Windows")
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(begun) + len(first) + 9, hard))
     try:
@@ -522,7 +522,8 @@ def test_a_capture_of_years_is_refused_unless_it_is_asked_for(tmp_path, write):
 
 
 def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
-    os.mkfifo(tmp_path / "fifo")
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "fifo")
     (tmp_path / "long").write_bytes(b"[" * 10**6)
     for path in (Path("/dev/zero"), tmp_path / "fifo", tmp_path, tmp_path / "long"):
         with pytest.raises(ScoreError) as error:

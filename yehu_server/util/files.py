@@ -202,12 +202,17 @@ def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.
             write_all(file, bytes(room_bytes))
             file.seek(0)
             file.truncate()
-            if overwrite:
-                path.replace(target.resolve())
         except OSError:
             discard(file, path)
-            file.close()
             raise
+        if overwrite:
+            file.close()  # Windows moves no open file
+            try:
+                path.replace(target.resolve())
+            except OSError:
+                path.unlink()
+                raise
+            file = io.FileIO(target.resolve(), "r+")
     except FileExistsError:
         raise OutputError(f"{target}: exists") from None
     except OSError as error:
@@ -216,9 +221,11 @@ def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.
 
 
 def discard(file: io.FileIO, path: Path) -> None:
-    """Remove an open file, unless another file has replaced it."""
-    with contextlib.suppress(OSError):
-        if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+    """Close and remove a file, unless another file has replaced it."""
+    with file, contextlib.suppress(OSError):
+        is_there = os.path.samestat(os.fstat(file.fileno()), path.stat())
+        file.close()  # Windows removes no open file
+        if is_there:
             path.unlink()
 
 

@@ -50,7 +50,8 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
 def _decoded(data: bytes) -> str:
     text = decoded(data, encoding_of(data))
     # Spaces of other kinds are spaces, and what cannot be shown is none of the music.
-    return "".join(sign if sign.isprintable() or sign in "\t\r\n" else " " for sign in text)
+    strange = {sign for sign in {*text} - {*"\t\r\n"} if not sign.isprintable()}
+    return text.translate({ord(sign): " " for sign in strange})
 
 
 def _tunes(text: str) -> tuple[list[str], list[list[str]]]:

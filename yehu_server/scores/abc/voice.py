@@ -55,7 +55,7 @@ class VoiceReader:
         self._ending: frozenset[int] = frozenset()
         self._marks: list[Mark] = []
         self._slurs: list[str] = []
-        self._starts: list[str] = []  # slurs that begin with the next note
+        self._starts: list[tuple[str, str, str]] = []  # slurs that begin with the next note
         self._slur_count = 0
         self._last: list[RawNote] = []
         self._last_begin = Fraction(0)
@@ -122,15 +122,15 @@ class VoiceReader:
     def _take(self, found: re.Match[str]) -> None:  # noqa: C901, PLR0912 - a branch for each token
         last = found.lastgroup or ""
         kind = KINDS.get(last, last)
-        if kind == "bar":
+        if kind == "note" and not self._in_overlay:
+            own = found.groups()[NOTE_AT : NOTE_AT + 4]
+            self._notes([self._pitched(*own)], found["note"].endswith("-"))
+        elif kind == "bar":
             self._bar_line(found["bar"].lstrip("."), found["number"] or "")
         elif kind == "ending":
             self._begin_ending(found["ending"][1:])
         elif self._in_overlay or kind in ("", "space"):
             return
-        elif kind == "note":
-            own = found.groups()[NOTE_AT : NOTE_AT + 4]
-            self._notes([self._pitched(*own)], found["note"].endswith("-"))
         elif kind == "chord":
             self._chord(found)
         elif kind == "rest":
@@ -194,13 +194,12 @@ class VoiceReader:
     def _notes(
         self, pitched: list[tuple[float, Fraction]], ties: bool, factor: Fraction = ONE
     ) -> None:
-        pitch, length = max(pitch for pitch, _ in pitched), pitched[0][1]
+        length, pitch = pitched[0][1], max(pitched)[0]
         if factor is not ONE:
             length *= factor
         if len(pitched) > 1:
             self._warnings["lower notes of chords are not played"] += len(pitched) - 1
-        note = RawNote(self._at, length, pitch, ("1", "1"), marks=self._marks)
-        note.ends += [("slur", "start", number) for number in self._starts]
+        note = RawNote(self._at, length, pitch, ("1", "1"), self._marks, ends=self._starts)
         self._marks, self._starts, self._tied = [], [], {}
         self._add([note], length)
         if ties:
@@ -209,7 +208,7 @@ class VoiceReader:
     def _add(self, notes: list[RawNote], length: Fraction) -> None:
         """Put a note, or a rest, where the music is."""
         self._count_note()
-        if self._next_factor is not ONE or self._tuplet:
+        if self._tuplet or self._next_factor is not ONE:
             length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
             self._next_factor = ONE
         if length.numerator > LONGEST * length.denominator:
@@ -272,7 +271,7 @@ class VoiceReader:
         if sign == "(":
             self._slur_count += 1
             self._slurs.append(str(self._slur_count))
-            self._starts.append(self._slurs[-1])
+            self._starts.append(("slur", "start", self._slurs[-1]))
         elif self._slurs and self._last:
             self._last[-1].ends.append(("slur", "stop", self._slurs.pop()))
 

@@ -76,7 +76,7 @@ def performed(
         parts.append(ScorePart(written.names[number], channel, channel + 1))
         end = max(end, part.notes[-1].end)
     warnings += [times(mark, count) for mark, count in left.items()]
-    timed.sort(key=lambda each: each[:3])
+    timed.sort()  # no two have the same number
     end_s = max(clock.seconds(end), timed[-1][0])
     return Score(
         tuple(event for *_, event in timed),
@@ -148,7 +148,8 @@ class _Performer:
 
     def _play(self, played: Played, active: Active) -> None:
         note, begin_s = played.note, played.begin_s
-        self._count_left(note, active)
+        if note.marks:
+            self._count_left(note, active)
         values = values_of(note, active, self._clock.quarter_s(note.begins_at), self._within)
         if played.direction:
             values[DIRECTION] = played.direction
@@ -160,7 +161,8 @@ class _Performer:
         curve = curve_of(note, begin_s, played.end_s) if node is None else []
         if abs(pitch - key) > 1e-6 or curve:
             values[BEND] = pitch - key + (curve[0][1] if curve else 0.0)
-        self._put_back(begin_s, note.beat, values)
+        if values or self._set:
+            self._put_back(begin_s, note.beat, values)
         velocity = self._loudness.velocity(note)
         if self._loudness.is_marked:
             self._swell(played)
@@ -241,8 +243,6 @@ class _Performer:
 
     def _count_left(self, note: Note, active: Active) -> None:
         """Count marks that cannot be played as written."""
-        if not note.marks:
-            return
         if note.marked("harmonic") and harmonic_of(note, self._within) is None:
             self._left["a harmonic that does not speak is played as a light stopped note"] += 1
         inner, outer = self._within.open_notes

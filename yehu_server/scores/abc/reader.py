@@ -19,7 +19,7 @@ from yehu_server.scores.abc.fields import metre_of, order_of_parts
 from yehu_server.scores.abc.keys import properties_of
 from yehu_server.scores.abc.tokens import BLOCK, FIELD
 from yehu_server.scores.abc.voice import VoiceReader
-from yehu_server.scores.encodings import decoded, encoding_of
+from yehu_server.scores.encodings import decoded, encoding_of, guess_line
 from yehu_server.scores.score import errors_name, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_PARTS, Written
@@ -34,22 +34,22 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
     one.
     """
     with errors_name(path):
-        head, tunes = _tunes(_decoded(read_score_bytes(path, MAX_BYTES)))
+        data = read_score_bytes(path, MAX_BYTES)
+        encoding = encoding_of(data)
+        head, tunes = _tunes(_shown(decoded(data, encoding)))
         if not tunes:
             raise ScoreError("has no tune of ABC, which begins with X:")
         number = song or 1
         if not 0 < number <= len(tunes):
             raise ScoreError(f"has {len(tunes)} tunes: there is no tune {number}")
         written = _Tune().read([*head, *tunes[number - 1]])
-        if len(tunes) > 1 and song is None:
-            line = f"tune 1 of {len(tunes)}; --song N takes another"
-            written = replace(written, remarks=(line, *written.remarks))
-        return written
+        which = f"tune 1 of {len(tunes)}; --song N takes another"
+        lines = [guess_line(data, encoding), which if len(tunes) > 1 and song is None else ""]
+        return replace(written, remarks=(*filter(None, lines), *written.remarks))
 
 
-def _decoded(data: bytes) -> str:
-    text = decoded(data, encoding_of(data))
-    # Spaces of other kinds are spaces, and what cannot be shown is none of the music.
+def _shown(text: str) -> str:
+    """A text whose spaces are of one kind, and without what cannot be shown."""
     strange = {sign for sign in {*text} - {*"\t\r\n"} if not sign.isprintable()}
     return text.translate({ord(sign): " " for sign in strange})
 

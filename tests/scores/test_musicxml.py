@@ -137,6 +137,12 @@ def test_each_element_is_played_silent_or_told_and_the_documentation_says_which(
     page = " ".join(EXAMPLE.parents[1].joinpath("docs/scores.md").read_text("utf-8").split())
     for kind in kinds:
         assert f"```text {' '.join(sorted(kind))} ```" in page
+    strange = "<egg>spam</egg>"  # wherever it is
+    dynamics = f"<dynamics>{strange}</dynamics>"
+    text = score(note("G4", 1, f"<ornaments><turn>{strange}</turn></ornaments>{dynamics}"))
+    text = text.replace("</part-list>", f"{strange}</part-list>")
+    text = text.replace("</measure>", f"<harmony><kind>{strange}</kind></harmony></measure>")
+    assert read(text).unknown == {"egg": 4}
     style = '<attributes><measure-style><slash type="{}"/></measure-style></attributes>'
     swing = "<sound><swing><first>0</first><second>1</second></swing></sound>"
     pedal = '<direction><direction-type><pedal type="start"/></direction-type></direction>'

@@ -67,10 +67,8 @@ def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
             is_open = False
         if is_open:
             tunes[-1].append(line)
-        elif not tunes and ((found := FIELD.match(line)) or line.startswith("%%")):
-            head += (
-                [line] if found is None or found[1] in vocabulary.FIELDS else []
-            )  # it may be any text
+        elif not tunes and line.startswith(("%%", *(f"{name}:" for name in vocabulary.FIELDS))):
+            head.append(line)  # others may be any text
     return head, tunes
 
 
@@ -113,12 +111,9 @@ class _Tune:
             if written.startswith("%%"):
                 self._directive(written[2:])
             line = re.sub(r"(?<!\\)%.*", "", written).rstrip()
-            if not line.strip():
-                continue
-            found = FIELD.match(line)
-            if found:
+            if found := FIELD.match(line):
                 self._field(found[1], found[2].strip())
-            elif self._in_music:
+            elif self._in_music and line.strip():
                 self._reader().line(line, self._inline)
         for voice in self._voices.values():
             voice.end()
@@ -154,7 +149,13 @@ class _Tune:
         self._now = self._voices[name]
         return self._now
 
+    def _check(self, name: str, value: str) -> None:
+        """Tell of a value that a field or a directive cannot have."""
+        if name in vocabulary.VALUES and not vocabulary.VALUES[name].fullmatch(value.strip()):
+            self._unknown[one_line(f"{name}:{value}"[:40])] += 1
+
     def _field(self, letter: str, text: str) -> None:
+        self._check(letter, text)
         if letter == "T":
             self._title = self._title or "".join(filter(str.isprintable, text))[:200]
         elif letter == "P" and not self._in_music:
@@ -184,6 +185,7 @@ class _Tune:
             name = f"MIDI {value.partition(' ')[0]}"
             setting, value = [*value.split(maxsplit=1), "", ""][:2]
         if setting in vocabulary.SETTINGS:
+            self._check(setting, value)
             if self._in_music:
                 self._reader().field(setting, value)
             else:
@@ -216,5 +218,4 @@ class _Tune:
         for (name, begin), (_, end) in pairwise(begins):
             ranges.setdefault(name, range(begin, end))
         order = [ranges[name] for name in order_of_parts(self._order) if name in ranges]
-        first = begins[0][1]
-        return [range(first), *order] if order and first else order
+        return [range(begins[0][1]), *order] if order and begins[0][1] else order

@@ -82,8 +82,7 @@ class VoiceReader:
         """Take a field that holds from here on."""
         if letter == "K":
             found, _, words = properties_of(value, self._unknown)
-            key = key_of(words, self._unknown) if words or not found else None
-            if key is not None:
+            if (words or not found) and (key := key_of(words, self._unknown)) is not None:
                 self._fifths, self._alters = key
             self.set_properties(found)
         elif letter == "M":
@@ -97,12 +96,11 @@ class VoiceReader:
             self._ratio = (2, 1) if self.is_hornpipe else (3, 1)
         elif letter == "propagate-accidentals":
             self._spread = value if value in vocabulary.SPREADS else self._spread
-        elif letter == "ratio" and re.fullmatch(r"[1-9]\d? +[1-9]\d?", value):
+        elif letter == "ratio" and vocabulary.VALUES["ratio"].fullmatch(value):
             long, short = value.split()
             self._ratio = int(long), int(short)
         elif letter == "Q":
-            tempo = fields.tempo_of(value, self.unit)
-            if tempo is not None:
+            if (tempo := fields.tempo_of(value, self.unit)) is not None:
                 self._direct("tempo", "figures", tempo)
             elif value.strip():
                 self._words(value.strip(' "'))
@@ -226,16 +224,21 @@ class VoiceReader:
             raise ScoreError(f"has more than {MAX_NOTES} notes")
 
     def _chord(self, found: re.Match[str]) -> None:
-        inner = list(re.finditer(NOTE, found["chord"]))
-        if not inner:
-            self._unknown[one_line(found["chord"][:40])] += 1
+        if not (inner := self._inner(found["chord"])):
             return
         pitched = [self._pitched(*each.groups()[:4]) for each in inner]
         ties = bool(found["chord_tie"]) or any(each[5] for each in inner)
         self._notes(pitched, ties, _length(found["chord_length"]))
 
+    def _inner(self, text: str) -> list[re.Match[str]]:
+        """The notes in brackets; what else is in them is told."""
+        found, other = [*re.finditer(NOTE, text)], re.sub(rf"{NOTE}|[\s\[\]{{}}/]", "", text)
+        if other or not found:
+            self._unknown[one_line(f"{other[:40]} in {text[0]}{text[-1]}".strip())] += 1
+        return found
+
     def _graces(self, text: str) -> None:
-        for each in re.finditer(NOTE, text):
+        for each in self._inner(text):
             self._count_note()
             pitch, _ = self._pitched(*each.groups()[:4])
             small = RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
@@ -255,10 +258,9 @@ class VoiceReader:
         self._at = self._last_begin + length
 
     def _begin_tuplet(self, count: int, ratio: list[str]) -> None:
-        times = (
-            int(ratio[0]) if ratio and ratio[0] else vocabulary.TIMES.get(count, self._odd_times)
-        )
-        notes = int(ratio[1]) if len(ratio) > 1 and ratio[1] else count
+        given = [*(int(each or 0) for each in ratio), 0, 0]
+        times = given[0] or vocabulary.TIMES.get(count, self._odd_times)
+        notes = given[1] or count
         if count and times and notes < 64:
             self._tuplet = [Fraction(times, count)] * notes
 
@@ -292,12 +294,10 @@ class VoiceReader:
     def _text(self, text: str) -> None:
         if text[:1] in ("^", "_", "<", ">", "@"):
             self._words(text[1:])
+        elif (meaning := meaning_of(text)) and meaning.kind == "jump":
+            self._bar.lines.jumps.add(meaning.name)
         else:
-            meaning = meaning_of(text)
-            if meaning is not None and meaning.kind == "jump":
-                self._bar.lines.jumps.add(meaning.name)
-            else:
-                self._warnings["chord symbols are not played"] += 1
+            self._warnings["chord symbols are not played"] += 1
 
     def _words(self, text: str) -> None:
         meaning = meaning_of(text)

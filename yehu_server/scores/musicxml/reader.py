@@ -23,6 +23,7 @@ from xml.parsers import expat
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.bars import BarReader
+from yehu_server.scores.musicxml.vocabulary import tell_strange
 from yehu_server.scores.score import errors_name, printable, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_BYTES, MAX_PARTS, Written
@@ -68,6 +69,7 @@ def written_of(root: Element) -> Written:
     if root.tag != "score-partwise":
         raise ScoreError(f"is not a MusicXML score: its root is <{printable(root.tag)}>")
     unknown: Counter[str] = Counter()
+    tell_strange(root, unknown)
     warnings: Counter[str] = Counter()
     elements = root.findall("part")
     if len(elements) > MAX_PARTS:

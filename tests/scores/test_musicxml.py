@@ -230,6 +230,25 @@ def test_a_tie_may_go_on_in_another_voice(read):
     assert [n.length for n in read(score(first, again)).parts[0].notes] == [2, 3]
 
 
+def test_what_is_tied_to_a_lower_note_of_a_chord_is_not_struck(read):
+    start, stop = ('<tie type="start"/>', '<tie type="stop"/>')
+    for chord in (
+        note("A4", 2, more=start) + note("+C5", 2),
+        note("C5", 2) + note("+A4", 2, more=start),
+    ):
+        for last, rest in (
+            (note("A4", 2, more=stop), []),
+            (note("A4", 2, more=stop) + note("+F4", 2), [65.0]),
+        ):
+            part = read(score(chord + last, note("B4", 4))).parts[0]
+            assert [n.pitch for n in part.notes] == [72.0, *rest, 71.0]
+    whole = start + stop
+    played = read(
+        score(chord + note("A4", 2, more=whole), note("A4", 2, more=stop) + note("A4", 2))
+    )
+    assert [(n.pitch, n.beat) for n in played.parts[0].notes] == [(72.0, 0), (69.0, 6)]
+
+
 def test_a_wavy_line_alone_is_a_vibrato_of_all_its_notes(read):
     wavy = '<ornaments><wavy-line type="{}"/></ornaments>'
     names = note("G4", 1, wavy.format("start")) + note("A4", 1) + note("B4", 1, wavy.format("stop"))

@@ -168,7 +168,7 @@ def test_edited_scores_are_read_as_two_readers_agree(subtests, tmp_path):
             try:
                 ours = notes_of(read_abc(file) if text else read_musicxml(file))
             except ScoreError as error:
-                ours = str(error)
+                ours = [] if "no notes" in str(error) else str(error)
             cases.append((f"{name}: {what}", ours, said if text else str(plain)))
         names = READERS["abc" if text else "xml"]
         files = [file for _, _, file in cases]

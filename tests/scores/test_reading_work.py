@@ -115,7 +115,7 @@ DENSE: dict[str, tuple[Callable[[int], bytes | str], int]] = {
         lambda n: midi(b"".join(on(1, 40 + at % 50) + off(0, 40 + at % 50) for at in range(n))),
         212,
     ),
-    "dense.abc": (lambda n: ABC + "a3/2b|" * (n // 2), 640),
+    "dense.abc": (lambda n: ABC + "a3/2b|" * (n // 2), 600),
 }
 
 

@@ -95,6 +95,8 @@ class WrittenClock:
 def _stretches(written: Written) -> Iterator[Stretch]:
     for part in written.parts:
         for note in part.notes:
+            if not note.marks:
+                continue
             fermata, caesura = note.marked("fermata"), note.marked("caesura")
             if fermata or caesura:
                 factor = 1.0 if fermata is None else _held(fermata.value)

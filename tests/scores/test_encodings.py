@@ -75,19 +75,26 @@ def test_latin_names_do_not_become_chinese():
 
 @pytest.mark.parametrize(
     ("codec", "told"),
-    [("gbk", "GB 18030"), ("utf-16", ""), ("utf-8", ""), ("big5", "Big5"), ("utf-16-le", "UTF-16")],
-)
+    [
+        ("gbk", "GB 18030"), ("utf-16", ""), ("utf-8", ""), ("big5", "Big5"),
+        ("utf-16-le", "UTF-16"), ("cp949", "EUC-KR"), ("cp1251", "Windows-1251"),
+        ("koi8-r", "KOI8"), ("cp932", "Shift-JIS"),
+    ],
+)  # fmt: skip
 def test_the_tune_of_a_midi_file_is_found_by_its_name(codec, told, tmp_path):
     file = mido.MidiFile(type=1)
-    for name, key in (("高胡伴奏", 79), ("旋律", 72)):
+    names = {"cp949": ("반주", "멜로디"), "cp932": ("ベース", "メロディ")}
+    names |= dict.fromkeys(("cp1251", "koi8-r"), ("Аккомпанемент", "Мелодия"))
+    other, tune = names.get(codec, ("高胡伴奏", "旋律"))
+    for name, key in ((other, 79), (tune, 72)):
         file.tracks.append(mido.MidiTrack([
             mido.MetaMessage("track_name", name=name.encode(codec).decode("latin-1")),
             mido.Message("note_on", note=key), mido.Message("note_off", note=key, time=960),
         ]))  # fmt: skip
     file.save(tmp_path / "song.mid")
-    for options in (ReadOptions(), ReadOptions(parts=["旋律"])):
+    for options in (ReadOptions(), ReadOptions(parts=[tune])):
         score = read_any(tmp_path / "song.mid", options)
-        assert [part.name for part in score.parts] == ["旋律"]
+        assert [part.name for part in score.parts] == [tune]
         struck = [event.message for event in score.events if event.message.type == "note_on"]
         assert [message.note for message in struck] == [72]
         assert any(told in line for line in score.remarks) or not told

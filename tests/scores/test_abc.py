@@ -283,6 +283,11 @@ def test_accidentals_reach_as_far_as_a_directive_says(read):
 def test_fields_and_directives_are_played_silent_or_told(read):
     silent = "A:x\nR:reel\n%%MIDI program 40\n%%titlefont Times 12\nI:linebreak $\n%%setfont-1 x\n"
     assert not read(f"X:1\n{silent}K:C\nCD|\nw: la la\n").not_understood
+    values = "M:egg\nL:egg\n%%propagate-accidentals egg\n%%MIDI ratio egg\n"
+    written = read(f"X:1\n{values}K:C\nC[e.g]{{!g}}D|\n")
+    assert written.unknown == dict.fromkeys(
+        ["M:egg", "L:egg", "propagate-accidentals:egg", "ratio:egg", ". in []", "! in {}"], 1
+    )
     told = "%%MIDI transpose 2\n%%strange\nI:odd\nm:~n3=n\nY:1\n"
     written = read(f"X:1\n{told}K:C\nCD|\ns: !p! *\n")
     assert written.unknown == dict.fromkeys(
@@ -322,6 +327,10 @@ def test_hornpipes_and_broken_rhythm_are_played_as_long_as_they_say(read):
         assert [note.beat for note in notes][: len(begins)] == begins, (head, music)
     written = read("X:1\nR:hornpipe\nK:C\nC|")
     assert written.remarks == ("a hornpipe (R:): pairs of even notes are played two to one",)
+
+
+def test_a_number_after_a_repeat_sign_is_no_ending(read):
+    assert notes_of(read("X:1\nK:C\n|:2C D:|\n")) == notes_of(read("X:1\nK:C\n|:C D:|\n"))
 
 
 def test_a_repeat_without_a_beginning_goes_back_to_a_double_bar(read):

@@ -1,4 +1,4 @@
-"""Names in any encoding: Chinese and Japanese are found, and Latin accents stay what they are."""
+"""Names in any encoding: each script is found, and Latin accents stay what they are."""
 
 from __future__ import annotations
 
@@ -23,6 +23,14 @@ TRADITIONAL = [
     "第一聲部",
 ]  # fmt: skip
 JAPANESE = ["メロディ", "伴奏", "ピアノ", "尺八", "三味線", "さくらさくら", "ギター1"]
+KOREAN = [
+    "멜로디", "반주", "바이올린", "가야금", "해금", "대금", "아리랑", "도라지", "고향의봄",
+    "제1바이올린", "봉선화", "뱃노래", "꽃", "남성합창",
+]  # fmt: skip
+RUSSIAN = [
+    "мелодия", "Скрипка", "флейта", "Бас", "Соло", "МЕЛОДИЯ", "Калинка", "Очи чёрные", "Танец",
+    "«Катюша»", "Первый голос", "Полонез",
+]  # fmt: skip
 LATIN = [
     "Flöte", "Größe", "Café", "naïve", "Violín", "Señor", "Für Elise", "Été", "São João", "CANÇÃO",
     "Ænima", "N° 2", "½ speed", "Ångström", "«Ça ira»", "NOËL", "Où", "Übung", "Är", "vy är",
@@ -34,11 +42,16 @@ def test_each_encoding_is_found_by_the_characters_of_every_day():
     wrong = []
     for names, codec in (
         (SIMPLIFIED, "gbk"), (SIMPLIFIED, "gb18030"), (TRADITIONAL, "big5"), (JAPANESE, "cp932"),
+        (KOREAN, "cp949"), (RUSSIAN, "cp1251"),
+        ([name for name in RUSSIAN if "«" not in name], "cp866"),
+        ([name for name in RUSSIAN if name != "МЕЛОДИЯ" and "«" not in name], "koi8-r"),
+        (["Журавли", "партия", "сопровождение"], "utf-16-le"),
+        (["간주", "제2바이올린"], "utf-16-be"), (["旋律", "二胡", "主旋律", "古筝"], "utf-16-le"),
     ):  # fmt: skip
         coded = [name.encode(codec) for name in names]
         found = [decoded(each, encoding_of(each)) for each in coded]  # each by itself
         wrong += [(codec, *pair) for pair in zip(names, found, strict=True) if len({*pair}) > 1]
-    for names in (SIMPLIFIED, TRADITIONAL, JAPANESE):  # all names of a file
+    for names in (SIMPLIFIED, TRADITIONAL, JAPANESE, KOREAN, RUSSIAN):  # all names of a file
         for codec in ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"):
             coded = [name.encode(codec) for name in names]
             found = [decoded(each, encoding_of(*coded)) for each in coded]
@@ -62,19 +75,26 @@ def test_latin_names_do_not_become_chinese():
 
 @pytest.mark.parametrize(
     ("codec", "told"),
-    [("gbk", "GB 18030"), ("utf-16", ""), ("utf-8", ""), ("big5", "Big5"), ("utf-16-le", "UTF-16")],
-)
+    [
+        ("gbk", "GB 18030"), ("utf-16", ""), ("utf-8", ""), ("big5", "Big5"),
+        ("utf-16-le", "UTF-16"), ("cp949", "EUC-KR"), ("cp1251", "Windows-1251"),
+        ("koi8-r", "KOI8"), ("cp932", "Shift-JIS"),
+    ],
+)  # fmt: skip
 def test_the_tune_of_a_midi_file_is_found_by_its_name(codec, told, tmp_path):
     file = mido.MidiFile(type=1)
-    for name, key in (("高胡伴奏", 79), ("旋律", 72)):
+    names = {"cp949": ("반주", "멜로디"), "cp932": ("ベース", "メロディ")}
+    names |= dict.fromkeys(("cp1251", "koi8-r"), ("Аккомпанемент", "Мелодия"))
+    other, tune = names.get(codec, ("高胡伴奏", "旋律"))
+    for name, key in ((other, 79), (tune, 72)):
         file.tracks.append(mido.MidiTrack([
             mido.MetaMessage("track_name", name=name.encode(codec).decode("latin-1")),
             mido.Message("note_on", note=key), mido.Message("note_off", note=key, time=960),
         ]))  # fmt: skip
     file.save(tmp_path / "song.mid")
-    for options in (ReadOptions(), ReadOptions(parts=["旋律"])):
+    for options in (ReadOptions(), ReadOptions(parts=[tune])):
         score = read_any(tmp_path / "song.mid", options)
-        assert [part.name for part in score.parts] == ["旋律"]
+        assert [part.name for part in score.parts] == [tune]
         struck = [event.message for event in score.events if event.message.type == "note_on"]
         assert [message.note for message in struck] == [72]
         assert any(told in line for line in score.remarks) or not told
@@ -83,18 +103,32 @@ def test_the_tune_of_a_midi_file_is_found_by_its_name(codec, told, tmp_path):
 
 def test_scores_are_read_in_the_encoding_that_they_have_or_say(tmp_path):
     wrong = []
-    for codec in ("utf-8", "gbk", "big5", "utf-16", "utf-8-sig", "utf-16-le"):
-        path = tmp_path / "song.abc"
-        path.write_bytes("X:1\nT:二胡旋律\nK:C\nCD|\n".encode(codec))
-        title = parse_jianpu("title=二胡旋律\n1 2 3 4\n".encode(codec)).title
-        if (read_abc(path).title, title) != ("二胡旋律", "二胡旋律"):
-            wrong.append((codec, read_abc(path).title, title))
-    for said, codec in (
-        ("GB2312", "gbk"), ("GBK", "gbk"), ("GB18030", "gb18030"), ("Big5", "big5"),
-        ("Shift_JIS", "cp932"), ("UTF-16", "utf-16"), ("UTF-8", "utf-8"), ("utf-16", "utf-8"),
+    for codec in (
+        "utf-8", "gbk", "big5", "utf-16", "utf-8-sig", "utf-16-le", "cp932", "cp949", "cp1251",
+        "koi8-r",
     ):  # fmt: skip
-        text = f'<?xml version="1.0" encoding="{said}"?><name>二胡</name>'
-        if parse(text.encode(codec)).text != "二胡":
+        path = tmp_path / "song.abc"
+        name = {"cp949": "해금", "cp1251": "Скрипка", "koi8-r": "скрипка"}.get(codec, "二胡旋律")
+        path.write_bytes(f"X:1\nT:{name}\nK:C\nCD|\n".encode(codec))
+        title = parse_jianpu(f"title={name}\n1 2 3 4\n".encode(codec)).title
+        written = read_abc(path)
+        if (written.title, title) != (name, name) or (
+            codec in ("utf-8", "utf-8-sig", "utf-16")
+        ) == bool([line for line in written.remarks if "is not UTF-8: read as" in line]):
+            wrong.append((codec, written.title, title, written.remarks))
+    for said, codec, name in (
+        ("GB2312", "gbk", "二胡"), ("GBK", "gbk", "二胡"), ("GB18030", "gb18030", "二胡"),
+        ("Big5", "big5", "二胡"), ("Shift_JIS", "cp932", "二胡"), ("UTF-16", "utf-16", "二胡"),
+        ("UTF-8", "utf-8", "二胡"), ("utf-16", "utf-8", "二胡"), ("utf8", "utf-8", "二胡"),
+        ("EUC-KR", "cp949", "해금"), ("ks_c_5601-1987", "cp949", "해금"),
+        ("GB_2312-80", "gbk", "二胡"), ("windows-949", "cp949", "해금"),
+        ("windows-1251", "cp1251", "Скрипка"),
+        ("KOI8-R", "koi8-r", "Скрипка"), ("x-euc-jp", "euc-jp", "二胡"),
+        ("unicode", "utf-16", "二胡"), ("ISO-2022-JP", "iso2022_jp", "二胡"),
+        ("ISO-8859-1", "latin-1", "Flöte"),
+    ):  # fmt: skip
+        text = f'<?xml version="1.0" encoding="{said}"?><name>{name}</name>'
+        if parse(text.encode(codec)).text != name:
             wrong.append((said, parse(text.encode(codec)).text))
     assert not wrong
     for said, reason in (("strange", "not read .strange."), ("GBK", "says that it is gbk")):

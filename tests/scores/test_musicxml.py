@@ -137,6 +137,12 @@ def test_each_element_is_played_silent_or_told_and_the_documentation_says_which(
     page = " ".join(EXAMPLE.parents[1].joinpath("docs/scores.md").read_text("utf-8").split())
     for kind in kinds:
         assert f"```text {' '.join(sorted(kind))} ```" in page
+    strange = "<egg>spam</egg>"  # wherever it is
+    dynamics = f"<dynamics>{strange}</dynamics>"
+    text = score(note("G4", 1, f"<ornaments><turn>{strange}</turn></ornaments>{dynamics}"))
+    text = text.replace("</part-list>", f"{strange}</part-list>")
+    text = text.replace("</measure>", f"<harmony><kind>{strange}</kind></harmony></measure>")
+    assert read(text).unknown == {"egg": 4}
     style = '<attributes><measure-style><slash type="{}"/></measure-style></attributes>'
     swing = "<sound><swing><first>0</first><second>1</second></swing></sound>"
     pedal = '<direction><direction-type><pedal type="start"/></direction-type></direction>'
@@ -222,6 +228,25 @@ def test_a_tie_may_go_on_in_another_voice(read):
     assert [(n.pitch, n.length) for n in other.notes] == [(71.0, 3)]
     again = note("A4", 1, more=stop) + note("A4", 3, more=stop, voice=2)  # tied by its own voice
     assert [n.length for n in read(score(first, again)).parts[0].notes] == [2, 3]
+
+
+def test_what_is_tied_to_a_lower_note_of_a_chord_is_not_struck(read):
+    start, stop = ('<tie type="start"/>', '<tie type="stop"/>')
+    for chord in (
+        note("A4", 2, more=start) + note("+C5", 2),
+        note("C5", 2) + note("+A4", 2, more=start),
+    ):
+        for last, rest in (
+            (note("A4", 2, more=stop), []),
+            (note("A4", 2, more=stop) + note("+F4", 2), [65.0]),
+        ):
+            part = read(score(chord + last, note("B4", 4))).parts[0]
+            assert [n.pitch for n in part.notes] == [72.0, *rest, 71.0]
+    whole = start + stop
+    played = read(
+        score(chord + note("A4", 2, more=whole), note("A4", 2, more=stop) + note("A4", 2))
+    )
+    assert [(n.pitch, n.beat) for n in played.parts[0].notes] == [(72.0, 0), (69.0, 6)]
 
 
 def test_a_wavy_line_alone_is_a_vibrato_of_all_its_notes(read):

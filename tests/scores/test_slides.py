@@ -114,6 +114,10 @@ def test_some_steps_slide_by_the_seed_and_more_of_the_wider_and_rising_ones():
     assert 0.06 < share(74, 76) < 0.16 < share(74, 77) < 0.3
     again = [settings(slid_by(score_of(*[74, 76] * 9), 3), BEND) for _ in range(2)]
     assert again[0] == again[1]
+    still = Setting("/playing/variation", 0.0)  # then no seed changes anything
+    found = [slid_by(score_of(*[74, 77] * 9, at_first=(still,)), seed) for seed in (0, 3)]
+    assert found[0] == found[1]
+    assert settings(found[0], BEND)
 
 
 @pytest.mark.parametrize("keys", [(74, 79), (79, 74), (74, 67)])

@@ -159,5 +159,5 @@ def test_what_holds_no_note_is_refused(tmp_path):
     file.add_track().append(mido.Message("control_change", control=11, value=90))
     file.save(tmp_path / "silent.mid")
     for name in ("session.jsonl", "silent.mid"):
-        with pytest.raises(ScoreError, match=f"{name}: has no note to write"):
+        with pytest.raises(ScoreError, match=f"{name}: has no note"):
             read_as_written(tmp_path / name)

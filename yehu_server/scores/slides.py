@@ -3,7 +3,7 @@
 In a score the next note is known. So the bow that plays the first note carries the slide, and the
 second note begins where it is written, on its pitch; live a slide can only follow the beat
 (``core.player.phrasing``). The slide is a bend of the first note. Which steps have one, and how
-long each lasts, the seed says.
+long each lasts, the seed says; without variation no seed changes it.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, Setting
 ARTICULATION, STRING = "/playing/articulation", "/playing/string"
 PHRASING, PIZZICATO, PORTAMENTO = "/playing/phrasing", "/playing/pizzicato", "/playing/portamento"
 INNER = 1.0
-LEFT_HAND = "/playing/left_hand"
-SEEN = (ARTICULATION, BEND, LEFT_HAND, PHRASING, PIZZICATO, PORTAMENTO, STRING)
+LEFT_HAND, VARIATION = "/playing/left_hand", "/playing/variation"
+SEEN = (ARTICULATION, BEND, LEFT_HAND, PHRASING, PIZZICATO, PORTAMENTO, STRING, VARIATION)
 STEP_S = 0.005  # between the points of a slide: the player's own interval
 BEND_S = 1e-3 * find(BEND).smooth_ms  # after which the finger is at a point
 GAP_S = 0.045  # between two notes that a slide may join
@@ -131,14 +131,15 @@ def _slides(
         state, then = states[note.begins], states[after.begins]
         low, high = sorted(_pitch(each, playing, within) for each in (note, after))
         rise = after.key - note.key
-        if not _slides_over(high - low, rise > 0, amount, _chance(playing, note, 0)):
+        seed = playing.seed if state.values[VARIATION] > 0.0 else 0
+        if not _slides_over(high - low, rise > 0, amount, _chance(seed, note, 0)):
             continue
         if not _is_free(state) or not _is_free(then) or state.bends != then.bends:
             continue
         string = _string(low, high, (state, then), within)
         if string is not None:
             semitones = math.copysign(high - low, rise)
-            usual_s = SHORTEST_S + (LONGEST_S - SHORTEST_S) * _chance(playing, note, 1)
+            usual_s = SHORTEST_S + (LONGEST_S - SHORTEST_S) * _chance(seed, note, 1)
             lasts_s = min(usual_s * min(amount / USUAL_PHRASING, 1.0), MOST * note.length_s)
             yield Slide(note, after, semitones, string, lasts_s)
 
@@ -153,9 +154,9 @@ def _slides_over(semitones: float, is_up: bool, amount: float, chance: float) ->
     return chance < share * (1.0 if is_up else FALLING) * amount / USUAL_PHRASING
 
 
-def _chance(playing: PlayingOptions, note: ScoreNote, which: int) -> float:
+def _chance(seed: int, note: ScoreNote, which: int) -> float:
     """A number from 0 to 1 that a note has under a seed."""
-    number = (playing.seed << 32) + 2 * note.begins + which
+    number = (seed << 32) + 2 * note.begins + which
     return Random(number).random()  # noqa: S311 - no secret
 
 

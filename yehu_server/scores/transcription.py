@@ -173,7 +173,7 @@ def written_of_seconds(
     """Return a score of notes in seconds; without a tempo, at that which fits their onsets."""
     begins = sorted(note.begin for _, heard in voices for note in heard)
     if not begins:
-        raise ScoreError("has no note to write")
+        raise ScoreError("has no note")
     quarters = _tempo_of(begins) if tempo is None else tempo
     rate, first = quarters / 60.0, begins[0]
     changed = [
@@ -219,7 +219,7 @@ def _written(
     """
     begins = sorted({note.begin for _, heard in voices for note in heard})
     if not begins:
-        raise ScoreError("has no note to write")
+        raise ScoreError("has no note")
     if max(note.end for _, heard in voices for note in heard) > notated.MAX_BEATS:
         raise ScoreError(f"is longer than {notated.MAX_BEATS} quarters")
     grid = _Grid(begins)

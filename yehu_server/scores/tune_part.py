@@ -11,11 +11,14 @@ from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.scores.octaves import NoteSpan, octaves_of
 
 NAMED = re.compile(
-    r"melod|\btune\b|\blead\b|\bvocals?\b|^voice\b|\bsing|\bsolo\b|旋律|主奏|领奏|領奏|唱",
+    r"melod|\btune\b|\blead\b|\bvocals?\b|^voice\b|\bsing|\bsolo\b|旋律|主奏|领奏|領奏|唱"
+    r"|mélod|メロディ|歌|멜로디|주선율|노래|독주|мелоди|соло|голос|вокал",
     re.IGNORECASE,
 )
 ACCOMPANIES = re.compile(
-    r"\bbass\b|chords|accomp|\bpad\b|drum|perc|伴奏|和弦|低音|鼓", re.IGNORECASE
+    r"\bbass\b|chords|accomp|\bpad\b|drum|perc|伴奏|和弦|低音|鼓"
+    r"|ベース|ドラム|반주|베이스|드럼|аккомпанемент|\bбас\b|ударн",  # noqa: RUF001
+    re.IGNORECASE,
 )
 # By ear.
 LOWEST_TUNE = 50.0  # mean of MIDI notes, below which a part is a bass

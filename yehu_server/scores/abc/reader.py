@@ -19,7 +19,7 @@ from yehu_server.scores.abc.fields import metre_of, order_of_parts
 from yehu_server.scores.abc.keys import properties_of
 from yehu_server.scores.abc.tokens import BLOCK, FIELD
 from yehu_server.scores.abc.voice import VoiceReader
-from yehu_server.scores.encodings import decoded, encoding_of
+from yehu_server.scores.encodings import decoded, encoding_of, guess_line
 from yehu_server.scores.score import errors_name, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_PARTS, Written
@@ -34,23 +34,24 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
     one.
     """
     with errors_name(path):
-        head, tunes = _tunes(_decoded(read_score_bytes(path, MAX_BYTES)))
+        data = read_score_bytes(path, MAX_BYTES)
+        encoding = encoding_of(data)
+        head, tunes = _tunes(_shown(decoded(data, encoding)))
         if not tunes:
             raise ScoreError("has no tune of ABC, which begins with X:")
         number = song or 1
         if not 0 < number <= len(tunes):
             raise ScoreError(f"has {len(tunes)} tunes: there is no tune {number}")
         written = _Tune().read([*head, *tunes[number - 1]])
-        if len(tunes) > 1 and song is None:
-            line = f"tune 1 of {len(tunes)}; --song N takes another"
-            written = replace(written, remarks=(line, *written.remarks))
-        return written
+        which = f"tune 1 of {len(tunes)}; --song N takes another"
+        lines = [guess_line(data, encoding), which if len(tunes) > 1 and song is None else ""]
+        return replace(written, remarks=(*filter(None, lines), *written.remarks))
 
 
-def _decoded(data: bytes) -> str:
-    text = decoded(data, encoding_of(data))
-    # Spaces of other kinds are spaces, and what cannot be shown is none of the music.
-    return "".join(sign if sign.isprintable() or sign in "\t\r\n" else " " for sign in text)
+def _shown(text: str) -> str:
+    """A text whose spaces are of one kind, and without what cannot be shown."""
+    strange = {sign for sign in {*text} - {*"\t\r\n"} if not sign.isprintable()}
+    return text.translate({ord(sign): " " for sign in strange})
 
 
 def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
@@ -66,10 +67,8 @@ def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
             is_open = False
         if is_open:
             tunes[-1].append(line)
-        elif not tunes and ((found := FIELD.match(line)) or line.startswith("%%")):
-            head += (
-                [line] if found is None or found[1] in vocabulary.FIELDS else []
-            )  # it may be any text
+        elif not tunes and line.startswith(("%%", *(f"{name}:" for name in vocabulary.FIELDS))):
+            head.append(line)  # others may be any text
     return head, tunes
 
 
@@ -112,12 +111,9 @@ class _Tune:
             if written.startswith("%%"):
                 self._directive(written[2:])
             line = re.sub(r"(?<!\\)%.*", "", written).rstrip()
-            if not line.strip():
-                continue
-            found = FIELD.match(line)
-            if found:
+            if found := FIELD.match(line):
                 self._field(found[1], found[2].strip())
-            elif self._in_music:
+            elif self._in_music and line.strip():
                 self._reader().line(line, self._inline)
         for voice in self._voices.values():
             voice.end()
@@ -153,7 +149,13 @@ class _Tune:
         self._now = self._voices[name]
         return self._now
 
+    def _check(self, name: str, value: str) -> None:
+        """Tell of a value that a field or a directive cannot have."""
+        if name in vocabulary.VALUES and not vocabulary.VALUES[name].fullmatch(value.strip()):
+            self._unknown[one_line(f"{name}:{value}"[:40])] += 1
+
     def _field(self, letter: str, text: str) -> None:
+        self._check(letter, text)
         if letter == "T":
             self._title = self._title or "".join(filter(str.isprintable, text))[:200]
         elif letter == "P" and not self._in_music:
@@ -183,6 +185,7 @@ class _Tune:
             name = f"MIDI {value.partition(' ')[0]}"
             setting, value = [*value.split(maxsplit=1), "", ""][:2]
         if setting in vocabulary.SETTINGS:
+            self._check(setting, value)
             if self._in_music:
                 self._reader().field(setting, value)
             else:
@@ -215,5 +218,4 @@ class _Tune:
         for (name, begin), (_, end) in pairwise(begins):
             ranges.setdefault(name, range(begin, end))
         order = [ranges[name] for name in order_of_parts(self._order) if name in ranges]
-        first = begins[0][1]
-        return [range(first), *order] if order and first else order
+        return [range(begins[0][1]), *order] if order and begins[0][1] else order

@@ -8,6 +8,7 @@ abcm2ps, abcjs and abc2midi add to them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 
@@ -109,6 +110,13 @@ IGNORED = frozenset({"thumb", "shortphrase", "mediumphrase", "longphrase", "5", 
 # How music is read.
 MUSIC_FIELDS = "KLMQR"
 SETTINGS = ("propagate-accidentals", "ratio")  # directives that change how music is read
+# What their values may be; those of K:, Q: and R: are told or may be anything.
+VALUES = {
+    "M": re.compile(r"|none|C\|?|\(?\d+( *\+ *\d+)*\)? */ *\d+"),
+    "L": re.compile(r"1|\d+/\d+"),
+    "propagate-accidentals": re.compile("pitch|octave|not"),
+    "ratio": re.compile(r"[1-9]\d? +[1-9]\d?"),
+}
 HORNPIPE = "a hornpipe (R:): pairs of even notes are played two to one"
 NAMES = {"m": "macros (m:)", "s": "lines of symbols (s:)"}  # of fields that are left out
 SPREADS = ("pitch", "octave", "not")  # how far an accidental reaches in its bar (11.3)

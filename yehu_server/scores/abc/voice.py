@@ -55,7 +55,7 @@ class VoiceReader:
         self._ending: frozenset[int] = frozenset()
         self._marks: list[Mark] = []
         self._slurs: list[str] = []
-        self._starts: list[str] = []  # slurs that begin with the next note
+        self._starts: list[tuple[str, str, str]] = []  # slurs that begin with the next note
         self._slur_count = 0
         self._last: list[RawNote] = []
         self._last_begin = Fraction(0)
@@ -82,8 +82,7 @@ class VoiceReader:
         """Take a field that holds from here on."""
         if letter == "K":
             found, _, words = properties_of(value, self._unknown)
-            key = key_of(words, self._unknown) if words or not found else None
-            if key is not None:
+            if (words or not found) and (key := key_of(words, self._unknown)) is not None:
                 self._fifths, self._alters = key
             self.set_properties(found)
         elif letter == "M":
@@ -97,12 +96,11 @@ class VoiceReader:
             self._ratio = (2, 1) if self.is_hornpipe else (3, 1)
         elif letter == "propagate-accidentals":
             self._spread = value if value in vocabulary.SPREADS else self._spread
-        elif letter == "ratio" and re.fullmatch(r"[1-9]\d? +[1-9]\d?", value):
+        elif letter == "ratio" and vocabulary.VALUES["ratio"].fullmatch(value):
             long, short = value.split()
             self._ratio = int(long), int(short)
         elif letter == "Q":
-            tempo = fields.tempo_of(value, self.unit)
-            if tempo is not None:
+            if (tempo := fields.tempo_of(value, self.unit)) is not None:
                 self._direct("tempo", "figures", tempo)
             elif value.strip():
                 self._words(value.strip(' "'))
@@ -122,15 +120,15 @@ class VoiceReader:
     def _take(self, found: re.Match[str]) -> None:  # noqa: C901, PLR0912 - a branch for each token
         last = found.lastgroup or ""
         kind = KINDS.get(last, last)
-        if kind == "bar":
+        if kind == "note" and not self._in_overlay:
+            own = found.groups()[NOTE_AT : NOTE_AT + 4]
+            self._notes([self._pitched(*own)], found["note"].endswith("-"))
+        elif kind == "bar":
             self._bar_line(found["bar"].lstrip("."), found["number"] or "")
         elif kind == "ending":
             self._begin_ending(found["ending"][1:])
         elif self._in_overlay or kind in ("", "space"):
             return
-        elif kind == "note":
-            own = found.groups()[NOTE_AT : NOTE_AT + 4]
-            self._notes([self._pitched(*own)], found["note"].endswith("-"))
         elif kind == "chord":
             self._chord(found)
         elif kind == "rest":
@@ -194,13 +192,12 @@ class VoiceReader:
     def _notes(
         self, pitched: list[tuple[float, Fraction]], ties: bool, factor: Fraction = ONE
     ) -> None:
-        pitch, length = max(pitch for pitch, _ in pitched), pitched[0][1]
+        length, pitch = pitched[0][1], max(pitched)[0]
         if factor is not ONE:
             length *= factor
         if len(pitched) > 1:
             self._warnings["lower notes of chords are not played"] += len(pitched) - 1
-        note = RawNote(self._at, length, pitch, ("1", "1"), marks=self._marks)
-        note.ends += [("slur", "start", number) for number in self._starts]
+        note = RawNote(self._at, length, pitch, ("1", "1"), self._marks, ends=self._starts)
         self._marks, self._starts, self._tied = [], [], {}
         self._add([note], length)
         if ties:
@@ -209,7 +206,7 @@ class VoiceReader:
     def _add(self, notes: list[RawNote], length: Fraction) -> None:
         """Put a note, or a rest, where the music is."""
         self._count_note()
-        if self._next_factor is not ONE or self._tuplet:
+        if self._tuplet or self._next_factor is not ONE:
             length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
             self._next_factor = ONE
         if length.numerator > LONGEST * length.denominator:
@@ -227,16 +224,21 @@ class VoiceReader:
             raise ScoreError(f"has more than {MAX_NOTES} notes")
 
     def _chord(self, found: re.Match[str]) -> None:
-        inner = list(re.finditer(NOTE, found["chord"]))
-        if not inner:
-            self._unknown[one_line(found["chord"][:40])] += 1
+        if not (inner := self._inner(found["chord"])):
             return
         pitched = [self._pitched(*each.groups()[:4]) for each in inner]
         ties = bool(found["chord_tie"]) or any(each[5] for each in inner)
         self._notes(pitched, ties, _length(found["chord_length"]))
 
+    def _inner(self, text: str) -> list[re.Match[str]]:
+        """The notes in brackets; what else is in them is told."""
+        found, other = [*re.finditer(NOTE, text)], re.sub(rf"{NOTE}|[\s\[\]{{}}/]", "", text)
+        if other or not found:
+            self._unknown[one_line(f"{other[:40]} in {text[0]}{text[-1]}".strip())] += 1
+        return found
+
     def _graces(self, text: str) -> None:
-        for each in re.finditer(NOTE, text):
+        for each in self._inner(text):
             self._count_note()
             pitch, _ = self._pitched(*each.groups()[:4])
             small = RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
@@ -256,10 +258,9 @@ class VoiceReader:
         self._at = self._last_begin + length
 
     def _begin_tuplet(self, count: int, ratio: list[str]) -> None:
-        times = (
-            int(ratio[0]) if ratio and ratio[0] else vocabulary.TIMES.get(count, self._odd_times)
-        )
-        notes = int(ratio[1]) if len(ratio) > 1 and ratio[1] else count
+        given = [*(int(each or 0) for each in ratio), 0, 0]
+        times = given[0] or vocabulary.TIMES.get(count, self._odd_times)
+        notes = given[1] or count
         if count and times and notes < 64:
             self._tuplet = [Fraction(times, count)] * notes
 
@@ -272,7 +273,7 @@ class VoiceReader:
         if sign == "(":
             self._slur_count += 1
             self._slurs.append(str(self._slur_count))
-            self._starts.append(self._slurs[-1])
+            self._starts.append(("slur", "start", self._slurs[-1]))
         elif self._slurs and self._last:
             self._last[-1].ends.append(("slur", "stop", self._slurs.pop()))
 
@@ -293,12 +294,10 @@ class VoiceReader:
     def _text(self, text: str) -> None:
         if text[:1] in ("^", "_", "<", ">", "@"):
             self._words(text[1:])
+        elif (meaning := meaning_of(text)) and meaning.kind == "jump":
+            self._bar.lines.jumps.add(meaning.name)
         else:
-            meaning = meaning_of(text)
-            if meaning is not None and meaning.kind == "jump":
-                self._bar.lines.jumps.add(meaning.name)
-            else:
-                self._warnings["chord symbols are not played"] += 1
+            self._warnings["chord symbols are not played"] += 1
 
     def _words(self, text: str) -> None:
         meaning = meaning_of(text)

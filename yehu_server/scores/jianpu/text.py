@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.encodings import LATIN, MARKS, NAMES, encoding_of
+from yehu_server.scores.encodings import LATIN, encoding_of, guess_line
 
 # Plain signs for those of Chinese keyboards and word processors; one for one, so that columns stay.
 _PLAIN = {
@@ -68,8 +68,7 @@ def decoded(data: bytes) -> tuple[str, str]:
         raise ScoreError("is not text in UTF-8 or GB 18030") from None
     if "\0" in text:
         raise ScoreError("is not text")
-    is_guess = encoding in NAMES and not data.startswith((*MARKS,))
-    return text, f"is not UTF-8: read as {NAMES[encoding]}" if is_guess else ""
+    return text, guess_line(data, encoding)
 
 
 def words_of(text: str) -> Iterator[Word | Header]:

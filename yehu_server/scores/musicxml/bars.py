@@ -44,6 +44,8 @@ class BarReader:
         self._notes = 0
         self._head: RawNote | None = None  # what <chord/> belongs to, played or not
         self._graces: list[RawNote] = []  # grace notes before their note
+        # Voices and pitches of lower notes of chords, which are not played, that are tied on.
+        self._dropped: set[tuple[tuple[str, str], float]] = set()
         self._at = Fraction(0)
         self._bar = RawBar("", BarLines())
         self._signs = RepeatSigns()
@@ -87,6 +89,7 @@ class BarReader:
                 self._at = self._at.limit_denominator(FINEST)
             if self._at > MAX_BEATS:
                 raise ScoreError(f"has a bar longer than {MAX_BEATS} quarters")
+        bar.notes = [note for note in bar.notes if "dropped" not in note.ties]
         tell(measure, bar.number, self._unknown)
         self._count(self._signs.fill(bar))
         self._swing_notes()
@@ -238,6 +241,9 @@ class BarReader:
             self._warnings["notes without a duration are left out"] += 1
             return
         self._spans(element, note)
+        if self._dropped and "stop" in note.ties and (note.voice, note.pitch) in self._dropped:
+            self._dropped.discard((note.voice, note.pitch))
+            self._drop(note)
         self._marks(element, note)
         notes = self._bar.notes
         last = notes[-1] if notes else None
@@ -257,10 +263,19 @@ class BarReader:
     def _in_chord(self, first: RawNote, note: RawNote) -> None:
         """Keep the highest note of a chord, with the marks of all."""
         self._warnings["lower notes of chords are not played"] += 1
-        if note.pitch > first.pitch:
+        dropped = RawNote(note.at, note.length, note.pitch, note.voice, ties=note.ties)
+        if ("dropped" not in note.ties, note.pitch) > ("dropped" not in first.ties, first.pitch):
+            dropped.pitch, dropped.ties = first.pitch, first.ties
             first.pitch, first.ties = note.pitch, note.ties
+        self._drop(dropped)
         first.marks += [mark for mark in note.marks if mark not in first.marks]
         first.ends += [end for end in note.ends if end not in first.ends]
+
+    def _drop(self, note: RawNote) -> None:
+        """Leave out a note; what it is tied to is left out, too, and not struck."""
+        if "start" in note.ties:
+            self._dropped.add((note.voice, note.pitch))
+        note.ties = {*note.ties, "dropped"}
 
     def _pitch(self, element: Element) -> float | None:
         pitch = element.find("pitch")

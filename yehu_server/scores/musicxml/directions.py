@@ -7,6 +7,7 @@ from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from yehu_server.scores.musicxml.marks import VALUES, number
+from yehu_server.scores.musicxml.vocabulary import SCHEMA
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
 from yehu_server.scores.written.voices import RawDirection
@@ -75,7 +76,7 @@ class DirectionReader:
                 self._add(at, "sign", name)
             elif set(name) in ({"p"}, {"f"}):  # five and six of them
                 self._add(at, "sign", name[:4])
-            else:
+            elif child.tag in SCHEMA:
                 self._unknown[f"dynamics {printable(name)}"] += 1
 
     def sound(self, sound: Element, at: Fraction, *, with_dynamics: bool = True) -> None:

@@ -11,6 +11,7 @@ from fractions import Fraction
 from xml.etree.ElementTree import Element, SubElement
 
 from yehu_server.params.articulations import ARTICULATIONS
+from yehu_server.scores.musicxml.vocabulary import SCHEMA
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.layout import LETTERS, STEPS, key_alter, spelled
 from yehu_server.scores.written.notated import Mark, Note
@@ -120,7 +121,7 @@ class NoteMarks:
             elif tag == "fingering" and (child.text or "").strip() in {*"01234", ""}:
                 if finger := (child.text or "").strip():
                     self._add("finger", float(finger))
-            elif tag not in IGNORED:
+            elif tag not in IGNORED and tag in SCHEMA:
                 self._count(f"{printable(tag)} {printable(child.text or '')}".strip())
 
     def _add(self, name: str, value: float | None = None) -> None:

@@ -8,6 +8,7 @@ an archive names.
 
 from __future__ import annotations
 
+import codecs
 import io
 import os
 import re
@@ -22,6 +23,7 @@ from xml.parsers import expat
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.bars import BarReader
+from yehu_server.scores.musicxml.vocabulary import tell_strange
 from yehu_server.scores.score import errors_name, printable, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_BYTES, MAX_PARTS, Written
@@ -34,14 +36,12 @@ MAX_CONTAINER_BYTES = 1 << 16
 ZIP = b"PK\x03\x04"
 CONTAINER = "META-INF/container.xml"
 _SAYS = re.compile(rb"(?:\xef\xbb\xbf)?\s*<\?xml[^>]*encoding\s*=\s*[\"']([\w.:-]+)")
-# Encodings of several bytes, which expat does not have, as Python calls the widest of each kind.
-CODECS = {
-    **dict.fromkeys(("gb2312", "gbk", "gb18030", "cp936", "gb_2312-80", "x-gbk"), "gb18030"),
-    **dict.fromkeys(("big5", "cp950", "big5-hkscs", "big5hkscs"), "big5hkscs"),
-    **dict.fromkeys(("shift_jis", "shift-jis", "sjis", "x-sjis", "windows-31j", "cp932"), "cp932"),
-    "euc-jp": "euc-jp",
-    "euc-kr": "cp949",
-}
+# Codecs of Python, and the widest of each kind, which writers mean by the same name.
+WIDEST = {
+    "gb2312": "gb18030", "gbk": "gb18030", "big5": "big5hkscs", "cp950": "big5hkscs",
+    "shift_jis": "cp932", "euc_kr": "cp949",
+}  # fmt: skip
+NAMED_OTHERWISE = {"cp31j": "cp932", "gb_2312-80": "gb2312"}
 COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 ENTRY = b"PK\x01\x02"  # before each entry of an archive's directory
 # What zipfile raises for archives that are damaged or made to harm.
@@ -69,6 +69,7 @@ def written_of(root: Element) -> Written:
     if root.tag != "score-partwise":
         raise ScoreError(f"is not a MusicXML score: its root is <{printable(root.tag)}>")
     unknown: Counter[str] = Counter()
+    tell_strange(root, unknown)
     warnings: Counter[str] = Counter()
     elements = root.findall("part")
     if len(elements) > MAX_PARTS:
@@ -176,16 +177,19 @@ def parse(data: bytes) -> ET.Element:
 
 def _in_utf8(data: bytes) -> tuple[bytes, str | None]:
     """Bytes that expat reads, and their encoding where it is another than they say."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data, "utf-16"
     found = _SAYS.match(data)
-    said = found[1].decode("ascii").lower() if found else ""
-    if said in ("utf-16", "utf16"):  # in bytes that are none
-        return data, "utf-8"
-    codec = CODECS.get(said)
-    if not codec:
-        return data, None
+    said = found[1].decode("ascii").lower() if found else "utf-8"
+    name = said.removeprefix("x-").replace("windows-", "cp")
     try:
-        return data.decode(codec).encode(), "utf-8"
-    except UnicodeDecodeError:
+        codec = codecs.lookup(NAMED_OTHERWISE.get(name, name)).name
+        if codec.startswith("utf-"):  # UTF-16 in bytes that are none
+            return data, "utf-8" if found else None
+        return data.decode(WIDEST.get(codec, codec)).encode(), "utf-8"
+    except LookupError:  # the parser refuses it
+        return data, None
+    except UnicodeError:
         raise ScoreError(f"says that it is {said}, which it is not; save it as UTF-8") from None
 
 

@@ -1,7 +1,8 @@
 """All elements of MusicXML 4.0, as its schema has them: played, rightly silent, or told.
 
 What is told is not understood, or has no meaning for this instrument; so is an element that
-MusicXML does not have. Marks of notes and chord symbols are told where they are read.
+MusicXML does not have, wherever it stands. Marks of notes and chord symbols are told where they are
+read.
 """
 
 from __future__ import annotations
@@ -71,7 +72,13 @@ PLAYED, TOLD, SILENT = (frozenset(names.split()) for names in (_PLAYED, _TOLD, _
 READ_ELSEWHERE = frozenset({"notations", "harmony", "figured-bass"})  # which tells of their own
 SAID_THERE = frozenset({"cue", "unpitched"})  # as notes that are not played
 BY_BAR = frozenset({"slash"})  # under which notes have no pitch: the place is told
-_KNOWN = PLAYED | SILENT | SAID_THERE
+_NAMED = TOLD - SAID_THERE
+SCHEMA = PLAYED | TOLD | SILENT
+
+
+def tell_strange(root: Element, unknown: Counter[str]) -> None:
+    """Count elements of a score that MusicXML does not have."""
+    unknown.update(printable(each.tag) for each in root.iter() if each.tag not in SCHEMA)
 
 
 def tell(measure: Element, number: str, unknown: Counter[str]) -> None:
@@ -82,8 +89,8 @@ def tell(measure: Element, number: str, unknown: Counter[str]) -> None:
             tag = child.tag
             if tag in READ_ELSEWHERE:
                 continue
-            if tag not in _KNOWN and child.get("type") != "stop":
+            if tag in _NAMED and child.get("type") != "stop":
                 place = f" (bar {number})" if tag in BY_BAR else ""
-                unknown[f"{printable(tag)}{place}"] += 1
-            if tag in _KNOWN and len(child):
+                unknown[f"{tag}{place}"] += 1
+            if tag not in _NAMED and len(child):
                 inner.append(child)

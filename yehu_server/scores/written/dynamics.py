@@ -112,7 +112,7 @@ class Loudness:
         if name is not None:
             loudest = max(float(DYNAMICS[FORCED[name][0]]), loudest + FORCED_BY)
         if note.marks:
-            loudest += sum(by for mark, by in ACCENTS.items() if note.marked(mark))
+            loudest += sum(ACCENTS.get(name, 0.0) for name in {mark.name for mark in note.marks})
         return round(min(max(loudest, SOFTEST), LOUDEST))
 
     def below_db(self, note: Note, beats: Sequence[float]) -> list[float]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from operator import itemgetter
 from typing import NamedTuple
 
 from yehu_server.core.player.harmonics import SAME_PITCH, SPEAKING, sounding_above
@@ -120,14 +121,18 @@ class Active:
         self.is_forced = self.is_forced or name in FORCED
 
 
+PLAIN = Active()  # where no sign holds; never changed
+
+
 def actives_of(part: Part) -> list[Active]:
     """The signs that hold at each note of a part; some are written for one note alone."""
-    signs, now, found = sorted(part.signs, key=lambda sign: sign.beat)[::-1], Active(), []
+    ordered = sorted(((float(sign.beat), sign) for sign in part.signs), key=itemgetter(0))
+    signs, now, found = ordered[::-1], PLAIN, []
     for note in part.notes:
-        if now.gesture or now.is_forced or (signs and signs[-1].beat <= note.beat):
+        if now.gesture or now.is_forced or (signs and signs[-1][0] <= note.begins_at):
             now = replace(now, gesture=0.0, is_forced=False)
-        while signs and signs[-1].beat <= note.beat:
-            now.take(signs.pop())
+        while signs and signs[-1][0] <= note.begins_at:
+            now.take(signs.pop()[1])
         found.append(now)
     return found
 
@@ -150,10 +155,12 @@ def is_plucked(note: Note, active: Active) -> bool:
 
 def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = YEHU) -> Values:
     """Return the parameters that a note's marks and the signs before it set, by address."""
-    values = _held(active)
-    if not (note.marks or values or active.plucked or articulation_of(note, active, quarter_s)):
+    if not note.marks and active is PLAIN:
         return {}
-    if number := articulation_of(note, active, quarter_s):
+    values, number = _held(active), articulation_of(note, active, quarter_s)
+    if not (note.marks or values or active.plucked or number):
+        return values
+    if number:
         values[ARTICULATION] = number
     for mark in note.marks:
         name, value = mark.name, mark.value

@@ -166,11 +166,9 @@ class Note:
     ends_at: float = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        end = self.beat + self.length
-        put = object.__setattr__
-        put(self, "end", end)
-        put(self, "begins_at", self.beat.numerator / self.beat.denominator)
-        put(self, "ends_at", end.numerator / end.denominator)
+        beat, end = self.beat, self.beat + self.length
+        begins_at, ends_at = beat.numerator / beat.denominator, end.numerator / end.denominator
+        vars(self).update(end=end, begins_at=begins_at, ends_at=ends_at)
 
     def at_pitch(self, pitch: float) -> Note:
         """The same note at another pitch; its beats are not worked out again."""

@@ -6,7 +6,7 @@ docs/scores.md has the table. Times are by ear, for the tempo of hands and not o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.rubato import at_time
@@ -32,8 +32,7 @@ WIDEST_BEND = 24.0  # semitones
 Curve = list[tuple[float, float]]
 
 
-@dataclass(frozen=True)
-class Touch:
+class Touch(NamedTuple):
     """A finger on a string: seconds from the start of the score, and a pitch (MIDI note)."""
 
     begin_s: float
@@ -55,9 +54,9 @@ def touches_of(note: Note, begin_s: float, end_s: float, trill: float | None) ->
     last = after[0].begin_s if after else end_s
     main = _ornamented(note, first, last, trill)
     if after:  # the note sounds until the first of the small ones holds
-        main[0] = replace(main[0], end_s=last + min(OVERLAP_S, 0.5 * (after[0].end_s - last)))
-    before = [replace(each, end_s=each.end_s + _overlap(each)) for each in before]
-    after = [replace(each, end_s=each.end_s + _overlap(each)) for each in after[:-1]] + after[-1:]
+        main[0] = main[0]._replace(end_s=last + min(OVERLAP_S, 0.5 * (after[0].end_s - last)))
+    before = [each._replace(end_s=each.end_s + _overlap(each)) for each in before]
+    after = [each._replace(end_s=each.end_s + _overlap(each)) for each in after[:-1]] + after[-1:]
     return [*before, *main, *after]
 
 

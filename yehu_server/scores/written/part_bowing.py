@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.written.mark_settings import DOWN, UP, Active, is_plucked
@@ -27,11 +27,11 @@ BOWING_MARKS = {
     "staccato", "staccatissimo", "spiccato", "portato", "up-bow", "down-bow", "tremolo",
     "pizzicato",
 }  # fmt: skip
+APART = {"staccato", "staccatissimo", "spiccato", "portato", "breath"}
 BOWING_SIGNS = {"pizz", "legato", "non-legato", "staccato", "tremolo"}
 
 
-@dataclass(frozen=True)
-class Played:
+class Played(NamedTuple):
     """A note as the hands play it."""
 
     note: Note
@@ -61,27 +61,30 @@ def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Pl
     silences = {sign.beat for sign in part.signs if sign.name == "caesura"}
     played = []
     for note, active in zip(notes, actives, strict=True):
-        end_s = _sounding_end(note, active, clock, slurs.over(note) is not None)
-        at = bisect_right(breaths, note.beat)
-        if at < len(breaths) and breaths[at] <= note.end:
-            end_s = _breathe(clock.seconds(note.begins_at), end_s)
+        begin_s, end_s = clock.seconds(note.begins_at), clock.seconds(note.ends_at)
+        if note.marks or active.short:
+            end_s = _sounding_end(note, active, begin_s, end_s, slurs.over(note) is not None)
+        if breaths:
+            at = bisect_right(breaths, note.beat)
+            if at < len(breaths) and breaths[at] <= note.end:
+                end_s = _breathe(begin_s, end_s)
         if silences and note.end in silences:
-            end_s -= min(CAESURA_S, 0.9 * (end_s - clock.seconds(note.begins_at)))
+            end_s -= min(CAESURA_S, 0.9 * (end_s - begin_s))
         over = trills.over(note)
         trill = None if over is None else 2.0 if over.value is None else over.value
-        played.append(Played(note, clock.seconds(note.begins_at), end_s, trill=trill))
+        played.append(Played(note, begin_s, end_s, trill=trill))
     for at, (one, other) in enumerate(pairwise(notes)):
-        if one.end != other.beat or is_plucked(other, actives[at + 1]):
+        if one.ends_at != other.begins_at or is_plucked(other, actives[at + 1]):
             continue
         slide = next((name for name in SLIDES if slides[name].joins(one, other)), "")
         if slide and not other.before:
             played[at + 1] = _slid_to(played[at], played[at + 1], slide)
-            played[at] = replace(played[at], end_s=played[at + 1].begin_s)
+            played[at] = played[at]._replace(end_s=played[at + 1].begin_s)
         is_slurred = slurs.joins(one, other) or actives[at].slurred
         if (slide or is_slurred) and _can_slur(one, other):
             length_s = played[at + 1].end_s - played[at + 1].begin_s
             end_s = played[at + 1].begin_s + min(OVERLAP_S, 0.5 * length_s)
-            played[at] = replace(played[at], end_s=end_s)
+            played[at] = played[at]._replace(end_s=end_s)
         elif is_slurred:
             _go_on(played, at)
     return played
@@ -89,9 +92,7 @@ def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Pl
 
 def _can_slur(one: Note, other: Note) -> bool:
     """Whether the second note can follow without a new stroke."""
-    is_short = any(
-        one.marked(name) for name in ("staccato", "staccatissimo", "spiccato", "portato", "breath")
-    )
+    is_short = any(mark.name in APART for mark in one.marks)
     return not is_short and round(one.pitch) != round(other.pitch)
 
 
@@ -101,17 +102,18 @@ def _go_on(played: list[Played], at: int) -> None:
     if not direction:
         before = played[at - 1].direction if at else 0.0
         direction = -before or (UP if played[at].note.marked("up-bow") else DOWN)
-        played[at] = replace(played[at], direction=direction)
-    played[at + 1] = replace(played[at + 1], direction=direction)
+        played[at] = played[at]._replace(direction=direction)
+    played[at + 1] = played[at + 1]._replace(direction=direction)
 
 
-def _sounding_end(note: Note, active: Active, clock: WrittenClock, is_slurred: bool) -> float:
-    begin_s, end_s = clock.seconds(note.begins_at), clock.seconds(note.ends_at)
-    if not note.marks and (is_slurred or not active.short):
+def _sounding_end(
+    note: Note, active: Active, begin_s: float, end_s: float, is_slurred: bool
+) -> float:
+    if not note.marks and is_slurred:
         return end_s
     if note.marked("caesura"):
         end_s -= CAESURA_S
-    shares = [share for name, share in SHARES.items() if note.marked(name)]
+    shares = [SHARES[mark.name] for mark in note.marks if mark.name in SHARES]
     if active.short and not shares and not is_slurred:
         shares = [SHARES["staccato"]]
     share = min(shares, default=1.0)
@@ -133,7 +135,7 @@ def _slid_to(one: Played, other: Played, slide: str) -> Played:
     slide_s = min(PORTAMENTO_S, PORTAMENTO_SHARE * length_s)
     if slide == "glissando":
         slide_s = min(GLISSANDO_SHARE * length_s, LONGEST_SLIDE_S)
-    return replace(other, begin_s=other.begin_s - slide_s, slide_s=slide_s)
+    return other._replace(begin_s=other.begin_s - slide_s, slide_s=slide_s)
 
 
 class _Over:
@@ -141,20 +143,20 @@ class _Over:
 
     def __init__(self, spans: Sequence[Span], name: str) -> None:
         own = sorted((span for span in spans if span.name == name), key=lambda span: span.begin)
-        self._begins = [span.begin for span in own]
+        self._begins = [float(span.begin) for span in own]
         # The span that reaches farthest, of those up to each: enough to answer for any note.
         self._farthest: list[Span] = []
         for span in own:
             last = self._farthest[-1:] or [span]
             self._farthest.append(max(span, *last, key=lambda each: each.end))
+        self._ends = [float(span.end) for span in self._farthest]
 
     def joins(self, one: Note, other: Note) -> bool:
         """Whether a span is over both of two notes that follow each other."""
-        at = bisect_left(self._begins, one.end) - 1
-        return at >= 0 and self._farthest[at].end >= other.beat
+        at = bisect_left(self._begins, one.ends_at) - 1
+        return at >= 0 and self._ends[at] >= other.begins_at
 
     def over(self, note: Note) -> Span | None:
         """A span over a note, if there is one."""
-        at = bisect_left(self._begins, note.end) - 1
-        found = self._farthest[at] if at >= 0 else None
-        return found if found is not None and found.end >= note.beat else None
+        at = bisect_left(self._begins, note.ends_at) - 1
+        return self._farthest[at] if at >= 0 and self._ends[at] >= note.begins_at else None

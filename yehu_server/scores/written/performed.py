@@ -22,6 +22,7 @@ from yehu_server.scores.written.dynamics import Loudness
 from yehu_server.scores.written.mark_settings import (
     ARTICULATION,
     DIRECTION,
+    PLAIN,
     Active,
     actives_of,
     harmonic_of,
@@ -76,7 +77,7 @@ def performed(
         parts.append(ScorePart(written.names[number], channel, channel + 1))
         end = max(end, part.notes[-1].end)
     warnings += [times(mark, count) for mark, count in left.items()]
-    timed.sort(key=lambda each: each[:3])
+    timed.sort()  # no two have the same number
     end_s = max(clock.seconds(end), timed[-1][0])
     return Score(
         tuple(event for *_, event in timed),
@@ -148,7 +149,13 @@ class _Performer:
 
     def _play(self, played: Played, active: Active) -> None:
         note, begin_s = played.note, played.begin_s
-        self._count_left(note, active)
+        key = _key_of(note.pitch)
+        is_plain = not (note.marks or note.before or note.after or note.contour or any(played[3:]))
+        if is_plain and active is PLAIN and key == note.pitch and not self._is_shaped():
+            self._touch(begin_s, played.end_s, key, self._loudness.velocity(note), note)
+            return
+        if note.marks:
+            self._count_left(note, active)
         values = values_of(note, active, self._clock.quarter_s(note.begins_at), self._within)
         if played.direction:
             values[DIRECTION] = played.direction
@@ -160,7 +167,8 @@ class _Performer:
         curve = curve_of(note, begin_s, played.end_s) if node is None else []
         if abs(pitch - key) > 1e-6 or curve:
             values[BEND] = pitch - key + (curve[0][1] if curve else 0.0)
-        self._put_back(begin_s, note.beat, values)
+        if values or self._set:
+            self._put_back(begin_s, note.beat, values)
         velocity = self._loudness.velocity(note)
         if self._loudness.is_marked:
             self._swell(played)
@@ -182,6 +190,10 @@ class _Performer:
                 self._setting(begin_s + AFTER_S, AFTER, note.beat, address, None)
                 del self._set[address]
 
+    def _is_shaped(self) -> bool:
+        """Whether something of the notes before still acts, or is to be put back."""
+        return bool(self._set) or self._loudness.is_marked
+
     def _touch(self, begin_s: float, end_s: float, key: int, velocity: int, note: Note) -> None:
         before = self._ends.get(key)
         if before is not None and self._timed[before][0] > begin_s:  # struck again
@@ -194,8 +206,10 @@ class _Performer:
         self._add(end_s, OFF, self._beat(end_s, note), off)
 
     def _beat(self, time_s: float, note: Note) -> float:
-        at_s = self._clock.seconds(note.begins_at)
-        return note.begins_at if abs(time_s - at_s) < 1e-9 else self._clock.beat_at(time_s)
+        for beat in (note.begins_at, note.ends_at):
+            if abs(time_s - self._clock.seconds(beat)) < 1e-9:
+                return beat
+        return self._clock.beat_at(time_s)
 
     def _swell(self, played: Played) -> None:
         """Controller 11 as a hairpin has it, below the loudest moment of the note."""
@@ -241,8 +255,6 @@ class _Performer:
 
     def _count_left(self, note: Note, active: Active) -> None:
         """Count marks that cannot be played as written."""
-        if not note.marks:
-            return
         if note.marked("harmonic") and harmonic_of(note, self._within) is None:
             self._left["a harmonic that does not speak is played as a light stopped note"] += 1
         inner, outer = self._within.open_notes

@@ -9,6 +9,7 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 
 from yehu_server.scores.written import notated
@@ -53,6 +54,8 @@ class WrittenClock:
         self._seconds = [0.0]
         for (beat, after), rate in zip(pairwise(self._beats), self._rates, strict=False):
             self._seconds.append(self._seconds[-1] + (after - beat) * rate)
+        # The same beats are asked for again and again, those of a note and of the next.
+        self.seconds = lru_cache(maxsize=1 << 10)(self._seconds_at)
 
     def _stretched(self, rates: list[float], stretches: list[Stretch]) -> list[float]:
         changed = list(rates)
@@ -65,7 +68,7 @@ class WrittenClock:
                 changed[at] = max(changed[at], rates[at] * each.factor + more)
         return changed
 
-    def seconds(self, beat: Fraction | float) -> float:
+    def _seconds_at(self, beat: Fraction | float) -> float:
         """Seconds at a beat."""
         exact = float(beat)
         at = self._at(exact)
@@ -92,6 +95,8 @@ class WrittenClock:
 def _stretches(written: Written) -> Iterator[Stretch]:
     for part in written.parts:
         for note in part.notes:
+            if not note.marks:
+                continue
             fermata, caesura = note.marked("fermata"), note.marked("caesura")
             if fermata or caesura:
                 factor = 1.0 if fermata is None else _held(fermata.value)

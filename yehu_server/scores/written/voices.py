@@ -24,7 +24,7 @@ MAX_WAVY = 100  # notes under a wavy line
 LONGEST_HAIRPIN = Fraction(32)  # in words, where no sign ends it
 
 
-@dataclass
+@dataclass(slots=True)
 class RawNote:
     """A note in its bar, before ties are joined; beats in quarters since the bar's beginning."""
 
@@ -82,7 +82,7 @@ class Voice:
     def add_bar(self, notes: list[RawNote], begin: Fraction) -> None:
         """Add the notes of a bar that begins at a beat."""
         first = len(self.notes)
-        for raw in sorted(notes, key=lambda raw: raw.at):
+        for raw in sorted(notes, key=lambda raw: float(raw.at)):
             if raw.is_grace:
                 self._grace(raw, begin)
             else:
@@ -105,7 +105,8 @@ class Voice:
 
     def _note(self, raw: RawNote, begin: Fraction) -> None:
         beat = begin + raw.at
-        self._ends(raw, beat)
+        if raw.ends:
+            self._ends(raw, beat)
         at = self._tied.pop(raw.pitch, None)  # some writers write only the beginning of a tie
         is_alone = at is None and "stop" in raw.ties
         if is_alone and any(voice.lengthen(raw, beat) for voice in self.staff):
@@ -121,7 +122,8 @@ class Voice:
             self.notes.append(Note(beat, raw.length, raw.pitch, tuple(raw.marks), graces))
         if "start" in raw.ties:
             self._tied[raw.pitch] = at
-        self._two_note_tremolo(raw)
+        if raw.ends:
+            self._two_note_tremolo(raw)
 
     def lengthen(self, raw: RawNote, beat: Fraction) -> bool:
         """Let the last note last longer if it is one that another voice ties on; whether it is."""
@@ -135,8 +137,8 @@ class Voice:
 
     def _shorten_last(self, beat: Fraction) -> None:
         """End what still sounds: one note at a time."""
-        # Equality is the usual case, and told much sooner than the order of fractions.
-        while self.notes and (end := self.notes[-1].end) != beat and end > beat:
+        at = float(beat)  # which is compared much sooner than fractions are
+        while self.notes and self.notes[-1].ends_at > at:
             last = self.notes.pop()
             if self._tied.get(last.pitch) == len(self.notes):
                 del self._tied[last.pitch]
@@ -145,8 +147,6 @@ class Voice:
 
     def _ends(self, raw: RawNote, beat: Fraction) -> None:
         """Begin and end the spans of a note; those that end, first."""
-        if not raw.ends:
-            return
         trill = next((mark.value for mark in raw.marks if mark.name == "trill"), None)
         for kind in ("stop", "start"):
             for name, which, number in raw.ends:

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from validation import convergence, energy, held_out, ideal, laws
+from validation import convergence, energy, held_out, ideal, laws, scheme
 from validation.draw import draw
 from validation.tables import PAGE, page
 
@@ -45,6 +45,7 @@ SUBJECTS: dict[str, Callable[[], Any]] = {
     "convergence": measure_convergence,
     "laws": laws.measure,
     "held_out": held_out.measure,
+    "scheme": scheme.measure,
 }
 
 

@@ -290,7 +290,7 @@ def test_a_lost_state_comes_back_at_rest_in_both_directions():
 def test_only_simulations_take_strings_in_two_directions():
     from yehu_server.core.physics import refined
 
-    with pytest.raises(ParameterError, match="only for simulate"):
+    with pytest.raises(ParameterError, match="only for simulate and sweeps"):
         refined.prepare(BOTH, RATE)
     assert planes.prepare(YEHU, RATE) is None
 

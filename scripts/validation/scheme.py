@@ -12,9 +12,9 @@ from yehu_lab.sweeps.result import Result
 from yehu_lab.sweeps.running import sweep
 from yehu_lab.sweeps.study import study_of
 
-NOTES = ("A♯4", "E5", "G5")  # of convergence.NOTES
+NOTES = ("A♯4", "G5")  # of convergence.NOTES
 RATES = (44100.0, 88200.0)
-FINEST = 352800.0
+FINEST = 176400.0
 SCHEMES = ("explicit", "modal")
 BETA, PERIODS = 0.13, 20
 ACCELERATIONS = np.geomspace(0.5, 32.0, 10)

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from validation import convergence, energy, held_out, ideal, laws, scheme
+from validation import convergence, energy, held_out, ideal, laws, scheme, two_directions
 from validation.draw import draw
 from validation.tables import PAGE, page
 
@@ -46,6 +46,7 @@ SUBJECTS: dict[str, Callable[[], Any]] = {
     "laws": laws.measure,
     "held_out": held_out.measure,
     "scheme": scheme.measure,
+    "two_directions": two_directions.measure,
 }
 
 

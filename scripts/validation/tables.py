@@ -231,22 +231,19 @@ def scheme(found: Sequence[Mapping[str, Any]]) -> list[str]:
     rows = []
     for row in found:
         is_reference = row["same"] == 1.0
-        against = ["", "", ""]
-        if not is_reference:
-            against = [f"{row['same']:.0%}", f"{row['cents']:+.1f}", f"{row['same_soon']:.0%}"]
+        against = ["", ""] if is_reference else [f"{row['same']:.0%}", f"{row['cents']:+.1f}"]
         rows.append(
             [
                 row["note"],
                 f"{row['scheme']}, {row['rate'] / 1e3:g} kHz",
                 f"{row['helmholtz']:.1%}",
                 f"{row['aperiodic']:.1%}",
-                *against[:2],
                 f"{row['soon']:.1%}",
-                against[2],
+                *against,
             ]
         )
-    head = ["note", "strings", "Helmholtz", "aperiodic", "cells alike", "pitch, cents"]
-    return table([*head, "begun within 20 periods", "alike"], rows)
+    head = ["note", "strings", "Helmholtz", "aperiodic", "begun", "cells alike", "pitch, cents"]
+    return table(head, rows)
 
 
 def shares(found: Mapping[str, Any]) -> list[str]:

@@ -179,3 +179,12 @@ def test_the_forces_that_keep_and_start_a_motion_are_printed(tmp_path, capsys):
     assert near["bear"] / far["bear"] == pytest.approx(0.2 / 0.13)
     assert main(["sweep", "forces", target]) == 0
     assert capsys.readouterr().out.startswith("position 0.13: to keep 0.0")
+
+
+def test_an_island_of_forces_is_no_threshold():
+    from yehu_lab.sweeps.thresholds import ends_of
+
+    forces = np.array([3.0, 2.5, 2.0, 1.0, 0.5, 0.2])  # as of a string with negative forces
+    speaks = np.array([True, False, True, True, True, False])
+    assert ends_of(speaks, forces) == (0.5, 2.0)
+    assert np.isnan(ends_of(~speaks & speaks, forces)).all()

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from yehu_lab.regimes.columns import HELMHOLTZ
 from yehu_lab.sweeps.result import Result
@@ -22,7 +23,8 @@ class Thresholds:
 
     `at`: the values of the other axes, by name.
     `keep`, `bear`: Schelleng's limits of a motion that is there.
-    `start`, `greatest`: the least and the greatest force, of those tried, of a motion from rest.
+    `start`, `greatest`: the least and the greatest force of a motion from rest, of the most forces
+    in a row that have it: islands are chance.
     """
 
     at: dict[str, float | str]
@@ -40,6 +42,16 @@ class Thresholds:
         if math.isnan(self.start):
             found = "no force starts it"
         return f"{place or 'all'}: to keep {self.keep:.3g} N, {found}, limit {self.bear:.3g} N"
+
+
+def ends_of(speaks: NDArray[np.bool_], forces: NDArray[np.float64]) -> tuple[float, float]:
+    """The least and the greatest force of the most that speak in a row; NaN where none does."""
+    order = np.argsort(forces)
+    edges = np.flatnonzero(np.diff(speaks[order], prepend=False, append=False)).reshape(-1, 2)
+    if len(edges) == 0:
+        return math.nan, math.nan
+    first, last = edges[(edges[:, 1] - edges[:, 0]).argmax()]
+    return float(forces[order[first]]), float(forces[order[last - 1]])
 
 
 def thresholds_of(result: Result) -> list[Thresholds]:
@@ -61,8 +73,7 @@ def thresholds_of(result: Result) -> list[Thresholds]:
     for at in itertools.product(*ranges):
         place = dict(zip(others, at, strict=True))
         limits = limits_of(study, place)
-        speaks = forces[np.moveaxis(regimes, along, -1)[at] == HELMHOLTZ]
-        least, most = (speaks.min(), speaks.max()) if len(speaks) else (math.nan, math.nan)
+        least, most = ends_of(np.moveaxis(regimes, along, -1)[at] == HELMHOLTZ, forces)
         values = {each: result.axes[each][i].item() for each, i in place.items()}
-        found.append(Thresholds(values, limits.lower, float(least), float(most), limits.upper))
+        found.append(Thresholds(values, limits.lower, least, most, limits.upper))
     return found

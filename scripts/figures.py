@@ -12,6 +12,7 @@ life       A held note, a bow change and a plain phrase, as a machine and as han
 articulations  Every articulation on one note.
 brilliance How bright nine notes are from soft to hard.
 schelleng  Where the model can be bowed, and the forces by which the player bows it.
+playability  Schelleng's diagrams of all notes, and the forces that keep and start them.
 
 Without names it draws all, in some minutes. Pictures go to FOLDER/figures and
 sounds to FOLDER/sounds (default: docs).
@@ -34,6 +35,7 @@ from pictures import (
     followed,
     life,
     paper,
+    playability,
     rooms,
     schelleng,
 )
@@ -43,7 +45,7 @@ ALL = {
     module.__name__.rpartition(".")[2]: module.draw_all
     for module in (
         *(paper, body, rooms, ensemble, followed, life),
-        *(articulations, brilliance, schelleng),
+        *(articulations, brilliance, schelleng, playability),
     )
 }
 

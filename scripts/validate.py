@@ -1,4 +1,4 @@
-"""Measure what bench/results/validation.md states, and write its tables and figures.
+"""Measure what both pages validation.md state, and write their tables and figures.
 
     .venv/bin/python scripts/validate.py measure   # half an hour on two cores
     .venv/bin/python scripts/validate.py write
@@ -14,9 +14,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from validation import convergence, energy, held_out, ideal, laws
+from validation import convergence, energy, held_out, ideal, laws, scheme, two_directions
 from validation.draw import draw
-from validation.tables import PAGE, page
+from validation.tables import PAGES, page
 
 RESULTS = Path(__file__).parent / "validation" / "results.json"
 
@@ -45,6 +45,8 @@ SUBJECTS: dict[str, Callable[[], Any]] = {
     "convergence": measure_convergence,
     "laws": laws.measure,
     "held_out": held_out.measure,
+    "scheme": scheme.measure,
+    "two_directions": two_directions.measure,
 }
 
 
@@ -65,7 +67,8 @@ def main(words: list[str]) -> None:
             print(name, "measured", flush=True)
         return
     draw(results())
-    PAGE.write_text(page(results()), "utf-8")
+    for each in PAGES:
+        each.write_text(page(each.read_text("utf-8"), results()), "utf-8")
 
 
 if __name__ == "__main__":

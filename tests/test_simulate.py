@@ -320,3 +320,25 @@ def test_a_file_that_is_no_gesture_says_so_with_its_name(tmp_path):
         assert str(path) in str(caught.value)
         assert wrong in str(caught.value)
         assert str(caught.value).isprintable()
+
+
+def test_a_rocking_finger_swings_pitch_and_level_in_both_directions():
+    from yehu_server.scores.gesture import gesture_from
+    from yehu_server.simulation.run import simulate
+
+    controls = {"finger_position": 0.1, "press_force": [[0.0, 0.0], [0.05, 2.0]]}
+    controls["pluck_position"], controls["pluck_force"] = 0.22, [[0.1, 1.0], [0.15, 1.0], [0.15, 0]]
+    rocking = {"rate": 8.0, "reach": 0.002, "lean": 0.5, "start": 0.1}
+    data = {"duration": 0.4, "instrument": {"directions": "two"}, "controls": controls}
+    run = simulate(gesture_from({**data, "rocking": rocking}), energy=True)
+    time, place = run.arrays["time"], run.arrays["finger_position"]
+    turn = np.where(time > 0.1, np.sin(2.0 * np.pi * 8.0 * (time - 0.1)), 0.0)
+    np.testing.assert_allclose(place[1:], 0.1 + 0.002 * turn[1:], atol=2e-5)
+    late = time > 0.1
+    press = run.arrays["press_force"]
+    np.testing.assert_allclose(press[late], 2.0 + turn[late], atol=2e-2)
+    assert np.abs(run.arrays["energy_error"]).max() < 1e-9 * run.arrays["power_in"].max()
+    with pytest.raises(ParameterError, match="rocking: takes the finger beyond the loop or the br"):
+        gesture_from({**data, "rocking": {"reach": 0.02}, "controls": {"finger_position": 0.29}})
+    with pytest.raises(ParameterError, match=r"rocking\.reach"):
+        gesture_from({**data, "rocking": {"reach": 1.0}})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from yehu_server.core.physics import layout, planes
+from yehu_server.core.physics import layout, modal_string, planes
 from yehu_server.core.physics.power import TABLES as POWER_TABLES
 
 KINDS = {
@@ -16,11 +16,12 @@ KINDS = {
     "State": (layout.STATE, "All that a step changes."),
     "Refined": (layout.REFINED, "What an instrument with torsion, or with wide hair, has besides."),
     "Planes": (planes.PLANES, "What an instrument in two directions has besides."),
+    "Modal": (modal_string.MODAL, "What an instrument of modal strings has besides."),
 }
 HEAD = '''"""Types of the model's records; written by scripts/generate from layout.py.
 
-In compiled code a record of an array of layout.MODEL, layout.STATE, layout.REFINED or
-planes.PLANES has these attributes.
+In compiled code a record of an array of layout.MODEL, layout.STATE, layout.REFINED,
+planes.PLANES or modal_string.MODAL has these attributes.
 docs/notation.md has their symbols and units.
 """
 

@@ -1,4 +1,4 @@
-"""The tables of bench/results/validation.md."""
+"""The tables of bench/results/validation.md, and of docs/validation.md."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ import numpy as np
 
 from validation.ideal import exponent
 
-PAGE = Path(__file__).resolve().parents[2] / "bench" / "results" / "validation.md"
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = (ROOT / "bench" / "results" / "validation.md", ROOT / "docs" / "validation.md")
 FINEST = "rate 352800"
 KINDS = {
     "rate 44100": "44.1 kHz",
@@ -23,9 +24,8 @@ KINDS = {
 }
 
 
-def page(found: Mapping[str, Any]) -> str:
-    """The page with its tables as they were measured."""
-    text = PAGE.read_text("utf-8")
+def page(text: str, found: Mapping[str, Any]) -> str:
+    """A page with its tables as they were measured."""
     made = {
         "helmholtz": helmholtz(found["ideal"]),
         "limits": limits(found["ideal"]),
@@ -34,11 +34,13 @@ def page(found: Mapping[str, Any]) -> str:
         "energy": energy(found["energy"]),
         "laws": laws(found["laws"]),
         "held-out": held_out(found["held_out"]),
+        "scheme": scheme(found["scheme"]),
+        "shares": shares(found["two_directions"]["shares"]),
+        "forces": forces(found["two_directions"]["forces"]),
     }
     for name, rows in made.items():
-        mark = f"<!-- table {name} -->"
-        pattern = re.compile(f"{mark}\n.*?{mark}", re.DOTALL)
-        text = pattern.sub("\n".join([mark, *rows, mark]).replace("\\", r"\\"), text)
+        pattern = re.compile(rf"(<!-- (?:table|measured) {name} -->\n).*?(?=\1)", re.DOTALL)
+        text = pattern.sub(lambda found: "\n".join([found[1] + rows[0], *rows[1:], ""]), text)  # noqa: B023
     return text
 
 
@@ -222,6 +224,52 @@ def held_out(found: Mapping[str, Any]) -> list[str]:
     ]
     head = ["regime", *(f"{rate / 1e3:g} kHz" for rate in found["rates"])]
     return table([*head, "difference, points", "its error by chance"], rows)
+
+
+def scheme(found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What maps are like by the explicit scheme and with modal strings."""
+    rows = []
+    for row in found:
+        is_reference = row["same"] == 1.0
+        against = ["", ""] if is_reference else [f"{row['same']:.0%}", f"{row['cents']:+.1f}"]
+        rows.append(
+            [
+                row["note"],
+                f"{row['scheme']}, {row['rate'] / 1e3:g} kHz",
+                f"{row['helmholtz']:.1%}",
+                f"{row['aperiodic']:.1%}",
+                f"{row['soon']:.1%}",
+                *against,
+            ]
+        )
+    head = ["note", "strings", "Helmholtz", "aperiodic", "begun", "cells alike", "pitch, cents"]
+    return table(head, rows)
+
+
+def shares(found: Mapping[str, Any]) -> list[str]:
+    """What the finger takes in one direction and in two."""
+    rows = [
+        [
+            name,
+            *(
+                text
+                for each in skin.values()
+                for text in (f"{each['share']:.0%}", f"{each['R']:.1f}")
+            ),
+        ]
+        for name, skin in found.items()
+    ]
+    presses = [f"press {press} N" for press in next(iter(found.values()))]
+    return table(["", *(text for press in presses for text in (press, "R, kg/s"))], rows)
+
+
+def forces(found: Mapping[str, Any]) -> list[str]:
+    """The least forces that keep, and that start, Helmholtz motion."""
+    rows = [
+        [note, *(f"{each['keep']:.3f}, {each['start']:.2f}" for each in made.values())]
+        for note, made in found.items()
+    ]
+    return table(["note, string", *next(iter(found.values()))], rows)
 
 
 def _paired_error(one: Any, other: Any) -> float:

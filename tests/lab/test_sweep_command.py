@@ -162,3 +162,29 @@ def test_what_cannot_be_drawn_is_reported(found, tmp_path, monkeypatch, refused)
         assert wrong in refused("sweep", "show", *words)
     assert found.exists()
     assert (tmp_path / "mine.png").read_text() == "mine"
+
+
+def test_the_forces_that_keep_and_start_a_motion_are_printed(tmp_path, capsys):
+    file, target = tmp_path / "study.toml", str(tmp_path / "found.npz")
+    vary = "[vary]\nforce = [0.001, 0.3, 0.5, 0.7]\nposition = [0.13, 0.2]\n"
+    file.write_text("duration = 0.2\n[stroke]\nstring = 2\nnote = 77\n" + vary)
+    assert main(["sweep", str(file), "-o", target, "--quiet"]) == 0
+    assert main(["sweep", "forces", target, "--json"]) == 0
+    near, far = json.loads(capsys.readouterr().out)["thresholds"]
+    assert near["at"] == {"position": 0.13}
+    assert near["start"] in (0.3, 0.5)
+    assert 0.0 < near["keep"] < near["start"] <= near["greatest"] <= 0.7
+    # Schelleng's limits go as the inverse square of the place, and as its inverse.
+    assert near["keep"] / far["keep"] == pytest.approx((0.2 / 0.13) ** 2)
+    assert near["bear"] / far["bear"] == pytest.approx(0.2 / 0.13)
+    assert main(["sweep", "forces", target]) == 0
+    assert capsys.readouterr().out.startswith("position 0.13: to keep 0.0")
+
+
+def test_an_island_of_forces_is_no_threshold():
+    from yehu_lab.sweeps.thresholds import ends_of
+
+    forces = np.array([3.0, 2.5, 2.0, 1.0, 0.5, 0.2])  # as of a string with negative forces
+    speaks = np.array([True, False, True, True, True, False])
+    assert ends_of(speaks, forces) == (0.5, 2.0)
+    assert np.isnan(ends_of(~speaks & speaks, forces)).all()

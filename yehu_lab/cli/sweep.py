@@ -1,11 +1,13 @@
 """Bow all strokes of a study, or variations of a gesture, on all cores, and judge each.
 
 The result has the kind of motion (regime) of each stroke, its onset, pitch, level and brightness.
-The same command continues an interrupted sweep. `sweep show FILE` draws the result.
+The same command continues an interrupted sweep. `sweep show FILE` draws the result, `sweep forces
+FILE` prints between which bow forces strokes speak.
 
   yehu-server sweep examples/studies/schelleng.toml -o schelleng.npz
   yehu-server sweep show schelleng.npz -o schelleng.png
   yehu-server sweep show schelleng.npz -o schelleng.html
+  yehu-server sweep forces schelleng.npz
   yehu-server sweep gesture.json -o runs.npz --vary bow_force=0.1:2:20:log
   yehu-server sweep gesture.json -o runs.npz --vary instrument.bow.epsilon_0=2e4,3e4 --signals runs
 
@@ -65,6 +67,7 @@ def add_to(commands: Any) -> None:
     add_options(parser, "--overwrite: replace an earlier result, or begin anew")
     add_reporting(parser)
     add_show(parser)
+    add_forces(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -150,6 +153,32 @@ def add_show(command: Parser) -> None:
         column={"default": DEFAULT},
     )
     add_reporting(parser)
+
+
+def add_forces(command: Parser) -> None:
+    """Add `sweep forces` to the parser of `sweep`."""
+    parser = command.add_word(
+        "forces", forces, "print the bow forces between which strokes speak, and Schelleng's limits"
+    )
+    add_options(
+        parser,
+        """
+        result FILE: the result of a sweep over the bow's force
+        """,
+        result=Path,
+    )
+    add_reporting(parser)
+
+
+def forces(arguments: argparse.Namespace) -> int:
+    """Print thresholds; return the exit code. Raises ParameterError where there are none."""
+    from yehu_lab.sweeps.result import Result
+    from yehu_lab.sweeps.thresholds import thresholds_of
+
+    found = thresholds_of(Result.load(arguments.result))
+    fields = {"thresholds": [vars(each) for each in found]}
+    print_report(arguments, fields, "\n".join(map(str, found)))
+    return 0
 
 
 def show(arguments: argparse.Namespace) -> int:

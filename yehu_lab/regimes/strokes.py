@@ -18,14 +18,12 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import PARK_AFTER_S
 from yehu_server.core.engine.atomics import at
-from yehu_server.core.physics import kernel
-from yehu_server.core.physics import refined as refined_kernel
+from yehu_server.core.physics import kernel, planes
 from yehu_server.core.physics.layout import (
     F_N,
     FINGER_CONTROLS,
     MODEL,
     PRESSURE,
-    REFINED,
     RELATIVE_VELOCITY,
     STATE,
     V_B,
@@ -34,9 +32,9 @@ from yehu_server.core.physics.layout import (
     new_record,
     probe_columns,
 )
-from yehu_server.core.physics.pluck import pluck_string
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.time_loop import advance_by, kernel_of
+from yehu_server.simulation.run import pull
 
 Array = Any
 
@@ -93,13 +91,12 @@ class Instruments(NamedTuple):
 
     `models` (ndarray [dtype=layout.MODEL]): what is bowed.
     `rests` (ndarray [dtype=layout.STATE]): the state from which each model begins.
-    `refined` (ndarray [dtype=layout.REFINED]): what each has besides; one with no points has
-    nothing.
+    `more` (list of ndarray [shape=(1,)], or None): what each has besides (``planes.prepare``).
     """
 
     models: Array
     rests: Array
-    refined: Array
+    more: list[Any]
 
 
 def prepared(
@@ -111,19 +108,17 @@ def prepared(
     """
     count = len(quantities)
     models, rests = np.zeros(count, MODEL), np.zeros(count, STATE)
-    refined = np.zeros(count, REFINED)
+    besides = []
     for i, (instrument, rate) in enumerate(zip(quantities, rates, strict=True)):
         model = kernel.prepare(instrument, rate)
         rest = kernel.at_rest(model)
+        more = planes.prepare(instrument, rate)
         if plucks and plucks[i] is not None:
-            pluck = plucks[i]
-            pluck_string(model, rest, pluck.string - 1, pluck.position, pluck.amplitude)
+            pull(model, rest, more, plucks[i])
         # Not by `concatenate`, which would give the records another layout.
         models[i], rests[i] = model[0], rest[0]
-        more = refined_kernel.prepare(instrument, rate)
-        if more is not None:
-            refined[i] = more[0]
-    return Instruments(models, rests, refined)
+        besides.append(more)
+    return Instruments(models, rests, besides)
 
 
 @compiled_exactly
@@ -232,16 +227,19 @@ def find(instruments: Instruments, strokes: Array, hands: ControlCurves) -> Arra
     """
     findings = np.zeros(len(strokes), FINDING)
     strokes = np.ascontiguousarray(strokes)
-    model, state, more = new_record(MODEL), new_record(STATE), new_record(REFINED)
+    model, state = new_record(MODEL), new_record(STATE)
     block = np.zeros(1, BLOCKS)
     signals = np.zeros((SIGNALS, int(strokes["frames"].max(initial=0))))
-    own = [array.ctypes.data for array in (model, state, more)]
     curves = [array.ctypes.data for array in (hands.first, hands.times, hands.values)]
     for i, stroke in enumerate(strokes):
         which = stroke["model"]
-        model[0], state[0], more[0] = (array[which] for array in instruments)
-        model["hair"] = stroke["hair"]
-        kernel = kernel_of(more if more["points"][0] else None)
+        model[0], state[0] = instruments.models[which], instruments.rests[which]
+        model["hair"], rest, more = stroke["hair"], instruments.more[which], model
+        if rest is not None:
+            more = new_record(rest.dtype)
+            more[0] = rest[0]
+        own = [array.ctypes.data for array in (model, state, more)]
+        kernel = kernel_of(rest)
         bow_stroke.call(
             kernel, *own, strokes[i:].ctypes.data, *curves, block.ctypes.data, signals.ctypes.data,
             signals.shape[1], findings[i:].ctypes.data,

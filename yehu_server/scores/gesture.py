@@ -61,6 +61,7 @@ CONTROLS = {
         "of the finger; 0 lifts it off the strings"),
 }
 # fmt: on
+_FINGER = ("finger_position", "press_force")
 # Of finger 2, `finger_position_2` and `press_force_2`; and so on.
 ALL_CONTROLS = CONTROLS | {
     f"{name}_{finger}": replace(
@@ -71,6 +72,7 @@ ALL_CONTROLS = CONTROLS | {
     for name in ("finger_position", "press_force")
 }
 HAMMER_LIMIT = 1e4  # N
+ROCKING_POINTS = 48  # of a curve in each turn of a rocking finger
 
 
 @dataclass(frozen=True)
@@ -84,6 +86,20 @@ class Pluck:
     position: float
     amplitude: float
     angle: float = 0.0
+
+
+@dataclass(frozen=True)
+class Rocking:
+    """A fingertip that rolls to and fro along the strings: vibrato by the first finger.
+
+    At `rate` (Hz) its contact goes `reach` (m) to either side, from `start` (s) on, and its press
+    rises by the share `lean` towards the bridge, and falls by it towards the loop.
+    """
+
+    rate: float
+    reach: float
+    lean: float
+    start: float
 
 
 @dataclass(frozen=True)
@@ -182,10 +198,42 @@ def gesture_from(data: Any, folder: Path = Path()) -> Gesture:
     has_pluck, has_hammer = (table.data.get(name) is not None for name in ("pluck", "hammer"))
     pluck = _pluck(table.table("pluck"), quantities) if has_pluck else None
     hammer: Curve = ()
+    if table.data.get("rocking") is not None:
+        _rock(curves, _rocking(table.table("rocking")), duration, quantities.bridge_x, table)
     if has_hammer:
         hammer = table.read("hammer", _curve, (), -HAMMER_LIMIT, HAMMER_LIMIT, "N")
-    table.refuse_others("pluck", "hammer")
+    table.refuse_others("pluck", "hammer", "rocking")
     return Gesture(rate, duration, quantities, curves, pluck, hammer, table.data)
+
+
+def _rocking(table: Fields) -> Rocking:
+    rocking = Rocking(
+        rate=table.read("rate", number, 6.0, 0.1, 50.0, "Hz"),
+        reach=table.read("reach", number, 1e-3, 0.0, 0.02, "m"),
+        lean=table.read("lean", number, 0.0, -1.0, 1.0),
+        start=table.read("start", number, 0.0, 0.0, MAX_DURATION_S, "s"),
+    )
+    table.refuse_others()
+    return rocking
+
+
+def _rock(
+    curves: dict[str, Curve], rocking: Rocking, duration: float, bridge_x: float, table: Fields
+) -> None:
+    """Add the motion of a rocking finger to the curves of the first; steps of them become ramps."""
+    first = [min(rocking.start, duration)]
+    step = 1.0 / (rocking.rate * ROCKING_POINTS)
+    steps = np.arange(first[0], duration + step, step)
+    own = {name: curves.get(name, ((0.0, CONTROLS[name].default),)) for name in _FINGER}
+    times = np.unique([time for curve in own.values() for time, _ in curve] + [*first, *steps])
+    turn = np.sin(2.0 * np.pi * rocking.rate * np.maximum(times - rocking.start, 0.0))
+    points = [np.array(own[name]).T for name in _FINGER]
+    place, press = (np.interp(times, at, values) for at, values in points)
+    place, press = place + rocking.reach * turn, press * (1.0 + rocking.lean * turn)
+    if not 0.0 < place.min() <= place.max() < bridge_x:
+        table.add_error("rocking", "takes the finger beyond the loop or the bridge")
+    for name, values in zip(_FINGER, (place, press), strict=True):
+        curves[name] = tuple(zip(times.tolist(), values.tolist(), strict=True))
 
 
 def sample_rate(value: Any) -> float:

@@ -19,10 +19,11 @@ from yehu_server.compile.machine_code import SIMULATING
 from yehu_server.core.physics import kernel, layout, planes, time_loop
 from yehu_server.core.physics.bow import friction_bound
 from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
+from yehu_server.core.physics.modal_string import largest_compliance, modal_shape, pull_modal
 from yehu_server.core.physics.pluck import pluck_string, pull_string
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import OutputError
-from yehu_server.scores.gesture import CONTROLS, Gesture
+from yehu_server.scores.gesture import CONTROLS, Gesture, Pluck
 from yehu_server.simulation.labels import as_data, as_json, dimensions, hash_of, label_of
 from yehu_server.util import __version__
 from yehu_server.util.files import replacing
@@ -40,6 +41,7 @@ COMPILED = {
     SIMULATING: (
         time_loop.advance_refined,
         time_loop.advance_in_two_directions,
+        time_loop.advance_modal,
         time_loop.advance_with_ledger,
     )
 }
@@ -174,27 +176,25 @@ def simulate(
         )
     state = kernel.at_rest(model)
     if gesture.pluck is not None:
-        pluck = gesture.pluck
-        turn = math.radians(pluck.angle)
-        along = pluck.amplitude * math.cos(turn)
-        pluck_string(model, state, pluck.string - 1, pluck.position, along)
-        if pluck.angle != 0.0:
-            normal = pluck.amplitude * math.sin(turn)
-            pull_string(m, more[0]["normal"], pluck.string - 1, pluck.position, normal)
+        pull(model, state, more, gesture.pluck)
 
     controls = gesture.control_rows()
     probes = np.zeros((frames, layout.probe_columns(fingers)))
     ledger = np.zeros((frames if energy else 0, len(LEDGER)))
     shaped: list[list[Floats]] = [[], []]
-    has_two = time_loop.has_two_directions(more)
+    kind = time_loop.kind_of(more)
+    has_two = kind == time_loop.IN_TWO_DIRECTIONS
     shaped_normal: list[list[Floats]] = [[], []]
     hop = strings_every or CHUNK
     for start in range(0, frames, hop):
         if strings_every:
             for i in range(STRINGS):
+                level = int(state["motion"]["level"][0])
+                if kind == time_loop.IS_MODAL:
+                    shaped[i].append(modal_shape(more[0], more[0]["a"][level], i, int(m["N"][i])))
+                    continue
                 shaped[i].append(shape_of(m, state["motion"][0], i))
                 if has_two:
-                    level = int(state["motion"]["level"][0])
                     shaped_normal[i].append(nodes_of(m, more[0]["normal"]["u"][level], i))
         part = slice(start, min(start + hop, frames))
         kept = ledger[part] if energy else None
@@ -210,8 +210,24 @@ def simulate(
         if has_two:
             arrays |= {f"string_{i + 1}_normal": np.array(shaped_normal[i]) for i in range(STRINGS)}
     asked = {"gesture": dict(gesture.source), "seed": int(gesture.quantities.bow.hair)}
-    own = None if more is None else more[0]["refined"] if has_two else more[0]
-    return Simulation(arrays, asked | metadata_of(m, state[0], frames, gesture.quantities, own))
+    own = None if more is None else more[0]["refined"] if "refined" in more.dtype.names else more[0]
+    facts = metadata_of(m, state[0], frames, gesture.quantities, own)
+    if kind == time_loop.IS_MODAL:
+        facts["friction_bound"] = friction_bound(m, own, largest_compliance(more[0]))
+    return Simulation(arrays, asked | facts)
+
+
+def pull(model: Any, state: Any, more: Any, pluck: Pluck) -> None:
+    """Pull a string of an instrument at rest into a triangle, to be let go."""
+    i, turn = pluck.string - 1, math.radians(pluck.angle)
+    if time_loop.kind_of(more) == time_loop.IS_MODAL:
+        x_c = float(model[0]["bridge_x"])
+        pull_modal(more[0], x_c, i, pluck.position, pluck.amplitude)
+        return
+    pluck_string(model, state, i, pluck.position, pluck.amplitude * math.cos(turn))
+    if pluck.angle != 0.0:
+        normal = pluck.amplitude * math.sin(turn)
+        pull_string(model[0], more[0]["normal"], i, pluck.position, normal)
 
 
 def shapes_of(

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.core.physics import layout, planes
+from yehu_server.core.physics import layout, modal_string, planes
 
 NOTATION = Path(__file__).parents[3] / "docs" / "notation.md"
 
@@ -27,6 +27,7 @@ def listed(heading: str) -> list[str]:
         ("STATE: work", layout.WORK),
         ("REFINED", layout.REFINED),
         ("PLANES", planes.PLANES),
+        ("MODAL", modal_string.MODAL),
     ],
 )
 def test_each_field_stands_in_the_notation_once(heading, record):

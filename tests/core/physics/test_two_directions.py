@@ -290,7 +290,7 @@ def test_a_lost_state_comes_back_at_rest_in_both_directions():
 def test_only_simulations_take_strings_in_two_directions():
     from yehu_server.core.physics import refined
 
-    with pytest.raises(ParameterError, match="only for simulate"):
+    with pytest.raises(ParameterError, match="only for simulate and sweeps"):
         refined.prepare(BOTH, RATE)
     assert planes.prepare(YEHU, RATE) is None
 
@@ -300,3 +300,23 @@ def test_bodies_of_many_modes_balance_in_two_directions():
 
     quantities = replace(override(BOTH, {"rocking": 3.0, "bounce": 4.0}), body=of_modes(64, 3))
     balanced(play(performance, 0.5, quantities=quantities))
+
+
+def test_what_the_balance_misses_under_a_heavy_bow_is_rounding():
+    """Noise without mean or memory that grows fourfold with each octave of rate, and adds up to
+    nothing: rounding of the bow's place, times its mass over k squared.
+    """
+    bow = {"M_n": 0.16, "K_n": 1e4, "alpha_n": 2.5, "beta_n": 0.0}
+    quantities, sizes = override(BOTH, {"bow": bow}), []
+
+    def curves(t):
+        return {"F_N": 2.0 * np.sin(44.0 * t), "v_b": 0.3, "press": [1.0], "x_f": [0.1]}
+
+    for rate in (RATE, 2.0 * RATE, 4.0 * RATE):
+        run = play(curves, 0.1, rate, quantities=quantities)
+        error = run["energy_error"][len(run["energy_error"]) // 4 :]
+        assert abs(error.mean()) < 0.1 * error.std()
+        assert abs(np.corrcoef(error[1:], error[:-1])[0, 1]) < 0.1
+        assert abs(error.sum()) < 1e-9 * np.abs(run["power_in"]).sum()
+        sizes.append(error.std())
+    assert np.diff(np.log2(sizes)) == pytest.approx([2.0, 2.0], abs=0.2)

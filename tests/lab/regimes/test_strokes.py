@@ -85,3 +85,17 @@ def test_schellengs_limits_are_his_formulas_and_bracket_helmholtz_motion():
         study = base | {"vary": {"position": [beta], "force": forces}}
         is_helmholtz = find(*batch(study)[2])["regime"] == HELMHOLTZ
         assert is_helmholtz.tolist() == [False, True, False], beta
+
+
+@pytest.mark.parametrize("kind", [{"scheme": "modal"}, {"directions": "two"}])
+def test_strokes_of_modal_strings_and_in_two_directions_are_those_of_their_simulation(kind):
+    stroke = {"string": 2, "note": 79, "acceleration": 20.0}
+    instrument = {"instrument": kind, "duration": 0.1}
+    study, index, strokes = batch({**instrument, "stroke": stroke, "vary": {"force": [0.5, 0.8]}})
+    found = find(*strokes)
+    run = simulate(study.bow.gesture(study.axes, index[0].tolist())).arrays
+    sound = run["pressure"], 44100.0, 440.0 * 2 ** (10 / 12)
+    finding = judge(run["relative_velocity"], run["bow_velocity"], *sound)
+    assert finding.first_slip_s == pytest.approx(float(found["first_slip_s"][0]), abs=1e-4)
+    assert finding.level_db == pytest.approx(float(found["level_db"][0]), abs=1.5)
+    assert not found["faults"].any()

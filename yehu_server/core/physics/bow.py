@@ -38,7 +38,9 @@ def prepare_bow(model: np.void, quantities: Quantities) -> None:
     model["C_h"] = 4.0 * k * k / Lambda
 
 
-def friction_bound(model: np.void, refined: np.void | None = None) -> float:
+def friction_bound(
+    model: np.void, refined: np.void | None = None, compliance: float | None = None
+) -> float:
     """Return a number that is below 1 where the friction equation has one solution only.
 
     For the worst case, the bow exactly on a node. It is a sufficient bound, as long as bristles
@@ -48,10 +50,13 @@ def friction_bound(model: np.void, refined: np.void | None = None) -> float:
     ----------
     refined : record of dtype REFINED
         Of an instrument with torsion, which makes the string yield more.
+    compliance : float, m/N
+        Of a modal string, in the place of a node's.
     """
     k = model["k"]
     yielding = 0.0 if refined is None else largest_yielding(refined)
-    mobility = (model["spread"].max() + model["C_h"] + yielding) / (2.0 * k)
+    own = model["spread"].max() if compliance is None else compliance
+    mobility = (own + model["C_h"] + yielding) / (2.0 * k)
     return float(STEEPEST * mobility * model["epsilon_0"] * k / 2.0)
 
 

@@ -88,12 +88,23 @@ def string_loss(model: Model, i: int, u_next: Array, u_prev: Array) -> float:
 
 
 @compiled_exactly
-def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
-    """Total of eqs. (55a)-(55e) at n + 1/2 (J)."""
+def strings_loss(model: Model, s: Motion, next_: int, prev: int) -> float:
+    """q_s of both strings (W)."""
+    total = 0.0
+    for i in range(STRINGS):
+        total += string_loss(model, i, s.u[next_, i], s.u[prev, i])
+    return total
+
+
+@compiled_exactly
+def stored_energy(
+    model: Model, s: Motion, in_strings: tuple[float, float], next_: int, now: int
+) -> float:
+    """Total of eqs. (55a)-(55e) at n + 1/2, of which each string has some (J)."""
     k = model.k
     total = 0.0
     for i in range(STRINGS):
-        total += string_energy(model, i, s.u[next_, i], s.u[now, i])
+        total += in_strings[i]
         zeta_velocity = (s.zeta[next_, i] - s.zeta[now, i]) / k
         zeta_mean = 0.5 * (s.zeta[next_, i] + s.zeta[now, i])
         total += 0.5 * model.M_h * zeta_velocity**2 + 0.5 * model.K_h * zeta_mean**2
@@ -112,11 +123,13 @@ def stored_energy(model: Model, s: Motion, next_: int, now: int) -> float:
 
 @compiled_exactly
 def record_energy(
-    model: Model, s: Motion, c: Contacts, w: Work, control: Array, before: float, row: Array
-) -> float:
+    model: Model, s: Motion, c: Contacts, w: Work, control: Array, before: float,
+    in_strings: tuple[float, float], strings: float, row: Array,
+) -> float:  # fmt: skip
     """Write one row of the ledger (columns: ``layout.LEDGER``) after a step is complete.
 
     `before` is what was stored half a step before it (J); returns what is stored half a step after.
+    Each string has `in_strings` (J) of that, and both lose `strings` (W).
     """
     k = model.k
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
@@ -124,9 +137,8 @@ def record_energy(
     u_b = interpolate(s.u[next_, c.string[BOW]], c.first[BOW], c.weights[BOW])
     v_r = contact_velocity(model, c, u_b, s.u[prev], s.zeta[next_], s.zeta[prev]) - control[V_B]
 
-    strings, hair, bridge, finger = 0.0, 0.0, 0.0, 0.0
+    hair, bridge, finger = 0.0, 0.0, 0.0
     for i in range(STRINGS):
-        strings += string_loss(model, i, s.u[next_, i], s.u[prev, i])
         hair += model.R_h * ((s.zeta[next_, i] - s.zeta[prev, i]) / (2.0 * k)) ** 2
     bridge_velocity, Q = 0.0, 0.0
     for m in range(padded_length(model.modes)):
@@ -149,7 +161,7 @@ def record_energy(
     friction = s.f_b * v_r - model.epsilon_0 * w.z_bar * w.r
     lifted, reset = w.dropped_z / k, w.dropped_Psi / k
 
-    stored = stored_energy(model, s, next_, now)
+    stored = stored_energy(model, s, in_strings, next_, now)
     losses = strings + bridge + finger + hair + friction + lifted + reset
     residual = 0.0
     for i in range(STRINGS):

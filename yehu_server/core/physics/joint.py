@@ -18,7 +18,7 @@ from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.grid import interpolate, overlap, spread
 from yehu_server.core.physics.layout import BOW, STENCIL, STRINGS
 from yehu_server.core.physics.planes import BOWING, BRIDGE_ROW, NORMAL
-from yehu_server.core.physics.records import Array, Model, Motion, Planes, Work
+from yehu_server.core.physics.records import Array, Modal, Model, Motion, Planes, Work
 
 NO_FORCE = -1.0  # in place of D
 
@@ -92,7 +92,7 @@ def add_row(
 
 
 @compiled
-def eliminate(d: Planes, begin: int, end: int) -> None:
+def eliminate(d: Planes | Modal, begin: int, end: int) -> None:
     """Eliminate the forces of some rows, those before them being eliminated.
 
     From there on only entries of G above the diagonal hold.
@@ -108,7 +108,7 @@ def eliminate(d: Planes, begin: int, end: int) -> None:
 
 
 @compiled
-def back_substitute(d: Planes, end: int) -> None:
+def back_substitute(d: Planes | Modal, end: int) -> None:
     """Find the forces of the rows before `end` from those after it, from the last to the first."""
     for row in range(end - 1, -1, -1):
         x = d.b[row]

@@ -32,8 +32,10 @@ from yehu_server.core.physics.layout import (
     lined_up,
     new_record,
 )
+from yehu_server.core.physics.modal_string import MODAL, prepare_modal
 from yehu_server.core.physics.power import TABLES, prepare_power
 from yehu_server.core.physics.quantities import Quantities
+from yehu_server.errors import ParameterError
 
 BOWING, NORMAL = 0, 1  # planes
 BRIDGE_ROW = STRINGS  # of the joint system: tensions, then the bridge in both planes
@@ -95,15 +97,23 @@ PLANES = lined_up(
 
 
 def prepare(quantities: Quantities, rate: float) -> Any:
-    """What an instrument has besides ``kernel.prepare``: None, of ``refined.prepare``, or PLANES.
+    """What an instrument has besides ``kernel.prepare``: of ``refined.prepare``, PLANES or MODAL.
 
     Returns: ndarray [shape=(1,)], at rest; None where it has nothing.
 
     Raises
     ------
     ParameterError
-        As ``refined.prepare``.
+        As ``refined.prepare``; where modal strings shall move in two directions, or have losses
+        that leave them no frequency.
     """
+    if quantities.scheme == "modal":
+        if quantities.directions == "two":
+            raise ParameterError('scheme: modal strings move in one direction, not "two"')
+        modal = new_record(MODAL)
+        refined.prepare_into(modal[0]["refined"], quantities, rate)
+        prepare_modal(modal[0], quantities, 1.0 / rate)
+        return modal
     if quantities.directions == "one":
         return refined.prepare(quantities, rate)
     planes, bow, finger = new_record(PLANES), quantities.bow, quantities.finger

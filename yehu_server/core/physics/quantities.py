@@ -246,6 +246,7 @@ class Quantities:
         300.0, "1/s", 0.0, 1e4, "chosen: felt under the strings behind the bridge; [Yehu]: 0"
     )
     torsion: str = choice("off", "on", source="chosen: see decisions/0022")
+    scheme: str = choice("explicit", "modal", source="chosen: see modal_string.py")
     directions: str = choice("one", "two", source="chosen: see planes.py")
     rocking: float = quantity(0.5, "1", -10.0, 10.0, "assumed: see planes.py; one was measured")
     bounce: float = quantity(1.0, "1", 0.0, 10.0, "assumed: see planes.py; one was measured")

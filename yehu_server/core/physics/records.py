@@ -1,7 +1,7 @@
 """Types of the model's records; written by scripts/generate from layout.py.
 
-In compiled code a record of an array of layout.MODEL, layout.STATE, layout.REFINED or
-planes.PLANES has these attributes.
+In compiled code a record of an array of layout.MODEL, layout.STATE, layout.REFINED,
+planes.PLANES or modal_string.MODAL has these attributes.
 docs/notation.md has their symbols and units.
 """
 
@@ -268,6 +268,43 @@ class Planes(Protocol):
     contact: NDArray[np.uint8]
     first: NDArray[np.uint16]
     weights: Array
+    G: Array
+    D: Array
+    W: Array
+    b: Array
+    x: Array
+
+
+class Modal(Protocol):
+    """What an instrument of modal strings has besides."""
+
+    refined: Refined
+    partials: int
+    L: Array
+    A_s: Array
+    B_s: Array
+    C_s: Array
+    M_s: Array
+    K_s: Array
+    R_s: Array
+    bend: Array
+    stretch_stiffness: Array
+    R_felt: Array
+    M_w: Array
+    K_w: Array
+    R_w: Array
+    A_w: Array
+    B_w: Array
+    C_w: Array
+    a: Array
+    w: Array
+    Delta: Array
+    x_slot: Array
+    string: NDArray[np.uint8]
+    shapes: Array
+    compliance: Array
+    rows: int
+    slot: NDArray[np.uint8]
     G: Array
     D: Array
     W: Array

@@ -100,10 +100,13 @@ def prepare(quantities: Quantities, rate: float) -> Any:
     ------
     ParameterError
         Where no torsional mode is low enough for the sample rate, hair with a friction that is
-        hyperbolic has some width, or strings move in two directions, which is ``planes.prepare``'s.
+        hyperbolic has some width; where strings are modal or move in two directions, which is
+        ``planes.prepare``'s.
     """
     if quantities.directions == "two":
-        raise ParameterError("directions: strings move in two only for simulate")
+        raise ParameterError("directions: strings move in two only for simulate and sweeps")
+    if quantities.scheme == "modal":
+        raise ParameterError("scheme: strings are modal only for simulate and sweeps")
     bow = quantities.bow
     is_plain = bow.width == 0.0 and bow.friction != "hyperbolic" and bow.epsilon_2 == 0.0
     if is_plain and quantities.torsion == "off":

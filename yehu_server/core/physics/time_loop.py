@@ -19,8 +19,13 @@ from yehu_server.compile.jit import (
     native,
 )
 from yehu_server.compile.memory import carray
-from yehu_server.core.physics import kernel, refined, two_directions
-from yehu_server.core.physics.energy import record_energy, stored_energy
+from yehu_server.core.physics import kernel, modal, refined, two_directions
+from yehu_server.core.physics.energy import (
+    record_energy,
+    stored_energy,
+    string_energy,
+    strings_loss,
+)
 from yehu_server.core.physics.layout import (
     CONTROLS_PER_FINGER,
     FINGER_CONTROLS,
@@ -35,6 +40,7 @@ from yehu_server.core.physics.layout import (
     control_columns,
     probe_columns,
 )
+from yehu_server.core.physics.modal_string import MODAL, modal_energy, modal_loss
 from yehu_server.core.physics.planes import PLANES
 from yehu_server.core.physics.records import Array, Model
 
@@ -88,9 +94,27 @@ def advance_in_two_directions(
     two_directions.advance(models, states, planes, rows[begin:end], out[begin:end])
 
 
-def has_two_directions(more: Any) -> bool:
-    """Whether ``planes.prepare`` made this for strings that move in two directions."""
-    return more is not None and more.dtype.itemsize == PLANES.itemsize
+@native
+def advance_modal(
+    model: Any, state: Any, more: Any, controls: Any, probes: Any, begin: int, end: int
+) -> None:
+    """As ``modal.advance``, from row `begin` up to row `end`. All are pointers."""
+    models, states = carray(model, (1,), MODEL), carray(state, (1,), STATE)
+    rows, out = control_rows(models[0], controls, end), probe_rows(models[0], probes, end)
+    modal.advance(models, states, carray(more, (1,), MODAL), rows[begin:end], out[begin:end])
+
+
+PLAIN, IS_REFINED, IN_TWO_DIRECTIONS, IS_MODAL = range(4)
+KERNELS = {
+    REFINED.itemsize: (IS_REFINED, advance_refined),
+    PLANES.itemsize: (IN_TWO_DIRECTIONS, advance_in_two_directions),
+    MODAL.itemsize: (IS_MODAL, advance_modal),
+}
+
+
+def kind_of(more: Any) -> int:
+    """What ``planes.prepare`` made: PLAIN for None, IS_REFINED, IN_TWO_DIRECTIONS or IS_MODAL."""
+    return PLAIN if more is None else KERNELS[more.dtype.itemsize][0]
 
 
 def kernel_of(more: Any) -> int:
@@ -99,17 +123,13 @@ def kernel_of(more: Any) -> int:
     0 is the plain one. The others are named by their addresses, so that each is compiled with the
     first instrument that has it, and not where none has.
     """
-    if more is None:
-        return 0
-    if IS_PLAIN:
-        return 2 if has_two_directions(more) else 1
-    return (
-        advance_in_two_directions.address if has_two_directions(more) else advance_refined.address
-    )
+    if more is None or IS_PLAIN:
+        return kind_of(more)
+    return int(KERNELS[more.dtype.itemsize][1].address)
 
 
 def _plain_call(kernel: int, *arguments: Any) -> None:
-    (advance_refined if kernel == 1 else advance_in_two_directions).function(*arguments)
+    next(each for kind, each in KERNELS.values() if kind == kernel).function(*arguments)
 
 
 @intrinsic(plain=_plain_call)
@@ -140,26 +160,37 @@ def advance_by(
         advance_at(which, model, state, more, controls, probes, begin, end)
 
 
+@compiled_with_aliasing
+def energy_of_strings(m: Model, s: Any, kind: int, more: Any, level: int) -> tuple[float, float]:
+    """The energy of each string half a sample before a level of time (J)."""
+    now = (level + 2) % LEVELS
+    if kind == IS_MODAL:
+        d = carray(more, (1,), MODAL)[0]
+        return modal_energy(m, d, 0, level, now), modal_energy(m, d, 1, level, now)
+    u, u_before = s.motion.u[level], s.motion.u[now]
+    return string_energy(m, 0, u[0], u_before[0]), string_energy(m, 1, u[1], u_before[1])
+
+
 @native
 def advance_with_ledger(
-    which: int, directions: int, model: Any, state: Any, more: Any, controls: Any, probes: Any,
+    which: int, kind: int, model: Any, state: Any, more: Any, controls: Any, probes: Any,
     ledger: Any, end: int,
 ) -> None:  # fmt: skip
     """As `advance_by` from the first row on, and keep the energy ledger.
 
-    `ledger` is a pointer to an array [shape=(end, len(LEDGER))], which is written: NaN at a sample
-    that lost the state.
+    `kind` is of `kind_of`; `ledger` a pointer to an array [shape=(end, len(LEDGER))], which is
+    written: NaN at a sample that lost the state.
     """
     m, s = carray(model, (1,), MODEL)[0], carray(state, (1,), STATE)[0]
     rows, out = control_rows(m, controls, end), probe_rows(m, probes, end)
     ledger_rows = carray(ledger, (end, len(LEDGER)), np.float64)
     level = int(s.motion.level)
-    stored = stored_energy(m, s.motion, level, (level + 2) % LEVELS)
     stored_more, now = 0.0, (level + 2) % LEVELS
-    if directions == 2:
+    stored = stored_energy(m, s.motion, energy_of_strings(m, s, kind, more, level), level, now)
+    if kind == IN_TWO_DIRECTIONS:
         d = carray(more, (1,), PLANES)[0]
         stored_more = two_directions.stored_energy(m, s, d, level, now)
-    elif which != 0:
+    elif kind != PLAIN:
         stored_more = refined.stored_energy(m, carray(more, (1,), REFINED)[0], level, now)
     for n in range(end):
         advance_by(which, model, state, more, controls, probes, n, n + 1)
@@ -167,12 +198,18 @@ def advance_with_ledger(
             ledger_rows[n] = np.nan
             stored, stored_more = 0.0, 0.0
             continue
-        stored = record_energy(m, s.motion, s.contacts, s.work, rows[n], stored, ledger_rows[n])
-        row, book = rows[n], ledger_rows[n]
-        if directions == 2:
+        row, book, motion, level = rows[n], ledger_rows[n], s.motion, int(s.motion.level)
+        prev = (level + 1) % LEVELS
+        in_strings = energy_of_strings(m, s, kind, more, level)
+        if kind == IS_MODAL:
+            lost = modal_loss(m, carray(more, (1,), MODAL)[0], motion, level, prev)
+        else:
+            lost = strings_loss(m, motion, level, prev)
+        stored = record_energy(m, motion, s.contacts, s.work, row, stored, in_strings, lost, book)
+        if kind == IN_TWO_DIRECTIONS:
             d = carray(more, (1,), PLANES)[0]
             stored_more = two_directions.record_planes(m, s, d, row, stored_more, book)
-        elif which != 0:
+        elif kind != PLAIN:
             t = carray(more, (1,), REFINED)[0]
             stored_more = refined.record_points(m, s, t, row, stored_more, book)
 
@@ -210,12 +247,10 @@ def run(
             raise ValueError(f"{rows.shape}: expected {frames} rows of {columns} numbers")
     arrays = (model, state, model if more is None else more, controls, probes)
     places = [array.ctypes.data for array in arrays]
-    directions = 2 if has_two_directions(more) else 1
+    kind = kind_of(more)
     if ledger is not None:
-        advance_with_ledger.call(which, directions, *places, ledger.ctypes.data, frames)
-    elif which == 0:
+        advance_with_ledger.call(which, kind, *places, ledger.ctypes.data, frames)
+    elif kind == PLAIN:
         advance.call(*places, 0, frames)
-    elif directions == 2:
-        advance_in_two_directions.call(*places, 0, frames)
     else:
-        advance_refined.call(*places, 0, frames)
+        KERNELS[more.dtype.itemsize][1].call(*places, 0, frames)

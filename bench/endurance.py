@@ -8,7 +8,8 @@
 OSCQuery clients listen to every address. An idle stream on the same device shows which deadlines
 the machine itself misses. Memory is sampled every few seconds. In the end the capture is replayed
 and compared with the recording, sample by sample. Without --audio-device the benchmark starts a
-JACK server with the dummy driver, which has no real-time rights.
+JACK server with the dummy driver, which has no real-time rights. Each bound is judged, and the exit
+code is 1 where one is missed.
 
 With --parts several players are on the stage, each with an input of its own and some of the OSC.
 With --page it plays in turns, each time anew: without a page, and with one that watches, plays and
@@ -58,6 +59,8 @@ COUNTERS = (
 )
 SHOWN = ("missed_deadlines", "late_callbacks", "underruns", "late_events", "applied_events")
 COMPARED_FRAMES = 1 << 20
+NONE = ("dropped_events", "osc_dropped", "osc_failures", "lost_states", "http_failures")
+MORE_LATE, MORE_MEMORY_MB = 0.001, 5.0  # beyond the idle stream's misses; since the second quarter
 
 
 # ---------------------------------------------------------------- beside the instrument
@@ -295,6 +298,27 @@ def print_figures(figures: dict[str, Any]) -> None:
     )
 
 
+def judged(figures: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Each bound: what was found, the most that may be, and whether it passes."""
+    own, idle = figures["instrument"], figures["idle_stream"]
+    late = own["late_events"] / max(1, own["midi_messages"] + own["osc_messages"])
+    misses = (idle["missed"] + idle["late_callbacks"]) / max(1, idle["callbacks"])
+    bounds: dict[str, tuple[float, float]] = {
+        what.replace("_", " "): (own[what], 0) for what in NONE
+    }
+    bounds["share of events that came late"] = late, misses + MORE_LATE
+    memory = figures["memory_mb"]
+    if len(memory) >= 4 and None not in [mb for _, mb in memory]:
+        _, second, *_, last = quarters(memory)
+        bounds["memory gained (MB)"] = last - second, MORE_MEMORY_MB
+    bounds["frames in which the replay differs"] = figures["replay_differs_in"], 0
+    bounds["exit code"] = figures["exit_code"], 0
+    return {
+        what: {"found": found, "at most": most, "": "PASS" if found <= most else "FAIL"}
+        for what, (found, most) in bounds.items()
+    }
+
+
 def main() -> None:
     """Measure and print everything."""
     parser = report.options(__doc__)
@@ -321,18 +345,21 @@ def main() -> None:
                     page=page,
                     parts=arguments.parts,
                 )
-            rows.append({"page": page, **figures})
+            rows.append({"page": page, **figures, "judged": judged(figures)})
             print_figures(figures)
+            report.show(rows[-1]["judged"])
     name = {False: "without a page", True: "with a page"}
     report.show({f"{n}, {name[row['page']]}": counts(row) for n, row in enumerate(rows, 1)})
     report.save(
         arguments.save,
-        rows if len(rows) > 1 else figures,
+        rows if len(rows) > 1 else rows[0],
         device=arguments.audio_device or report.NO_CARD,
         seconds=arguments.seconds,
         blocksize=arguments.blocksize,
         parts=arguments.parts,
     )
+    if any(bound[""] == "FAIL" for row in rows for bound in row["judged"].values()):
+        sys.exit(1)
 
 
 if __name__ == "__main__":

@@ -24,9 +24,9 @@ from yehu_server.ahead.interpreter import INTERPRETER
 from yehu_server.ahead.memory_images import image
 from yehu_server.ahead.module import PAGE, Target, here, joined
 from yehu_server.compile import levels
-from yehu_server.compile.cache_folder import data_folder
+from yehu_server.compile.cache_folder import OTHERS, data_folder
 from yehu_server.errors import OutputError, YehuError
-from yehu_server.system.files import LIBRARY, linker_options
+from yehu_server.system.files import LIBRARY, linker_options, may_others_write
 from yehu_server.util import __version__
 from yehu_server.util.files import write_bytes
 from yehu_server.util.hints import install_command
@@ -171,6 +171,8 @@ def page_module() -> Path:
     folder = data_folder() / f"page-{build_hash()}"
     if found := _found(folder):
         return found
+    if _is_others(folder):
+        raise YehuError(f"{folder}: {OTHERS}")
     if page_linker() is None:
         raise YehuError(
             f"nothing is built for pages, and there is no wasm-ld; {HAVE_IT.format('lld')}"
@@ -182,9 +184,16 @@ def page_module() -> Path:
         return build("wasm", folder)[0]
 
 
+def _is_others(folder: Path) -> bool:
+    """Whether others may write to a folder, where it is there."""
+    return folder.is_dir() and may_others_write(folder.stat())
+
+
 def _found(folder: Path) -> Path | None:
-    """The module of the present sources, as shipped or in a folder."""
+    """The module of the present sources, as shipped or in a folder that is one's own."""
     for path in (SHIPPED, folder / PAGE_FILE):
+        if path == folder / PAGE_FILE and _is_others(folder):
+            continue
         if path.is_file() and _made(path)[-1:] == [build_hash()]:
             return path
     return None

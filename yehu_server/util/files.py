@@ -195,7 +195,7 @@ def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.
     `room_bytes`: free space that the disk must have.
     """
     check_target(target)
-    path = partial_beside(target.resolve()) if overwrite else target
+    path = partial_beside(end_of(target)) if overwrite else target
     try:
         file = io.FileIO(path, "x")
         try:
@@ -208,11 +208,11 @@ def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.
         if overwrite:
             file.close()  # Windows moves no open file
             try:
-                path.replace(target.resolve())
+                path.replace(end_of(target))
             except OSError:
                 path.unlink()
                 raise
-            file = io.FileIO(target.resolve(), "r+")
+            file = io.FileIO(end_of(target), "r+")
     except FileExistsError:
         raise OutputError(f"{target}: exists") from None
     except OSError as error:
@@ -262,7 +262,7 @@ def replacing(target: Path, may_replace: Callable[[Path], bool] = replace_any) -
     """
     check_target(target)
     check_free(target, may_replace)
-    partial = partial_beside(target.resolve())
+    partial = partial_beside(end_of(target))
     try:
         partial.touch(exist_ok=False)
         yield partial
@@ -276,12 +276,17 @@ def replacing(target: Path, may_replace: Callable[[Path], bool] = replace_any) -
 
 def _move(partial: Path, target: Path, may_replace: Callable[[Path], bool]) -> None:
     """Move a file to its target, whole at each moment, without a race with other writers."""
-    destination = target.resolve()
+    destination = end_of(target)
     try:
         destination.hardlink_to(partial)  # only where nothing is there yet; `partial` goes next
     except OSError:  # it is there, or the disk has no links
         check_free(target, may_replace)
         partial.replace(destination)
+
+
+def end_of(target: Path) -> Path:
+    """The file that links lead to; of a ring of links, one of them (where Path's raises)."""
+    return Path(os.path.realpath(target))
 
 
 def partial_beside(target: Path) -> Path:

@@ -122,7 +122,7 @@ def test_a_note_of_midi_of_the_server_and_of_a_page_is_not_late_for_what_other_p
     assert midi < now + BLOCK
     assert page < now + BLOCK
     ends = [frame for frame, kind, *_ in applied if kind == END]
-    assert max(ends) > now + 10 * BLOCK
+    assert max(ends) > now + 4 * BLOCK
 
 
 def test_midi_is_not_late_for_what_the_server_is_sent() -> None:
@@ -134,7 +134,7 @@ def test_midi_is_not_late_for_what_the_server_is_sent() -> None:
     applied = play(instrument, 4000)
     (midi,) = frames_of(applied, BEGIN, MARK)
     assert midi < DUE + BLOCK
-    assert max(frame for frame, *_ in applied) > DUE + 2000
+    assert max(frame for frame, *_ in applied) > DUE + 1000
 
 
 def test_a_page_is_not_late_for_what_the_server_is_sent_nor_the_server_for_pages() -> None:

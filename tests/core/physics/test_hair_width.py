@@ -10,6 +10,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from yehu_server.core.physics import layout
+from yehu_server.core.physics.friction import MAX_ITERATIONS
+from yehu_server.core.physics.hair_width import MAX_EVALUATIONS, release_points, solve_points
 from yehu_server.core.physics.quantities import Quantities, override
 
 YEHU = Quantities()
@@ -98,3 +100,33 @@ def test_each_strip_of_wide_hair_slips_by_itself():
     assert run.refined["offset"][0, :4] == pytest.approx([-0.0075, -0.0025, 0.0025, 0.0075])
     assert np.ptp(run.refined["v_r"][0]) > 1e-4
     assert np.ptp(run.refined["z"][0, :, 0]) > 1e-7
+
+
+@pytest.fixture(name="wide")
+def wide_fixture():
+    """Records of wide hair that has bent bristles: model, state, points."""
+    hard = override(YEHU, {"bow": {"width": 0.002, "points": 3, "epsilon_0": 1e8}})
+    run = play({"F_N": 0.5, "v_b": 0.2}, 0.02, quantities=hard, ledger=False)
+    return run.model[0], run.state[0], run.refined[0]
+
+
+def test_a_sample_takes_a_bounded_number_of_evaluations_whatever_comes(wide):
+    model, state, points = wide
+    points["free"][:3] = 1e4, -1e4, 5e3  # m/s, of which TOLERANCE is less than rounding
+    most = MAX_EVALUATIONS + 2 * 3 * MAX_ITERATIONS
+    assert MAX_EVALUATIONS <= solve_points(model, state, points, 0, 0.5) < most
+    assert state["unconverged"] == 1
+
+
+def test_forces_that_are_not_solved_are_let_go_where_they_would_give_energy(wide):
+    model, state, points = wide
+    before, bristles = points["f_b"].copy(), points["z"][:3, 0].copy()
+    for more, is_let_go in ((1e-3, False), (-1e-3, True)):
+        points["free"][:3] = points["v_r"][:3] + points["mobility"][:3, :3] @ before[:3]
+        points["free"][:3] += more * np.sign(before[:3])
+        state["work"]["dropped_z"] = 0.0
+        release_points(model, points, state["work"], 0)
+        assert points["f_b"].any() != is_let_go
+        energy = (0.5 * points["share"] * model["epsilon_0"] * bristles**2).sum()
+        assert state["work"]["dropped_z"] == pytest.approx(energy if is_let_go else 0.0)
+    np.testing.assert_array_equal(points["v_r"][:3], points["free"][:3])

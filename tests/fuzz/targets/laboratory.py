@@ -7,6 +7,7 @@ import math
 import re
 
 import numpy as np
+import scipy.optimize  # noqa: F401 - which takes a second, of no input
 from fuzz.target import target, written
 
 from yehu_lab.body.body_file import read_fit

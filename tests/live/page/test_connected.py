@@ -23,6 +23,7 @@ from waiting import PATIENCE_S, until
 from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
+from yehu_server.live import limits
 from yehu_server.live.options import PartOptions
 from yehu_server.live.page.players import CHANNELS, LOWEST
 from yehu_server.live.page.sockets import COMMANDS, NO_PART, NOW, SNAPSHOT, WRONG
@@ -283,6 +284,22 @@ def test_what_is_no_command_and_no_question_ends_the_connection(server, subtests
     ]:
         with subtests.test(said=said[:40]):
             assert with_pages(server, lambda page, said=said: ending(page, said), 1) == WRONG
+
+
+def test_a_message_may_hold_as_many_commands_as_the_limit_says_and_no_more(server) -> None:
+    many = packed(command(WRITE, INDEX[PRESSURE], 0.4375)) * limits.PAGE_EVENTS
+    server.instrument.report_commands()
+
+    def is_applied() -> bool:
+        return 0.4375 in server.instrument.applied_commands()["value"]
+
+    async def play(page: Page) -> Any:
+        await page.socket.send_bytes(many)
+        await asyncio.to_thread(until, is_applied, "not taken")
+        await page.socket.send_bytes(many + packed(command(WRITE, INDEX[PRESSURE], 0.5)))
+        return (await page.end())[0]
+
+    assert with_pages(server, play, 1) in {WRONG, aiohttp.WSCloseCode.MESSAGE_TOO_BIG}
 
 
 def test_pages_that_sound_get_the_commands_of_others_and_hear_that_they_left(server) -> None:

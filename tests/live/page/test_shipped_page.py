@@ -4,6 +4,7 @@ page never mixes an older module with facts of now.
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,6 +16,7 @@ from live.page.browser import drive
 from yehu_server.ahead import build
 from yehu_server.ahead.build import page_module
 from yehu_server.ahead.build_hash import build_hash, section_of, with_section
+from yehu_server.errors import YehuError
 from yehu_server.live.page import module_process, site
 from yehu_server.live.page.site import Site, write_page
 
@@ -98,6 +100,17 @@ def test_a_module_with_any_bit_wrong_is_none_of_these_sources(shipped, tmp_path)
             path.write_bytes(whole + more)
             taken += [more] if build._found(kept.parent) == path else []
         assert not taken, path
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no users")
+@pytest.mark.usefixtures("shipped")
+def test_no_module_is_taken_from_a_folder_that_others_may_write_to(tmp_path) -> None:
+    kept = tmp_path / f"page-{build_hash()}" / "yehu.wasm"
+    kept.parent.mkdir()
+    kept.write_bytes(with_section(EMPTY, f"9.9 {build_hash()}"))
+    kept.parent.chmod(0o777)
+    with pytest.raises(YehuError, match="others may write there"):
+        page_module()
 
 
 # ---------------------------------------------------------------- while it is made

@@ -34,12 +34,20 @@ from yehu_server.core.engine.mailbox import (
     SENDER_QUEUES,
     SERVER,
     SOUND_INPUT,
+    STARTS,
     WAITING,
     WRITERS,
     pop,
     push,
     ready_at,
     spend,
+)
+from yehu_server.core.engine.note_index import (
+    NOTES,
+    SLOTS_PER_EVENT,
+    add_note,
+    end_notes,
+    take_note,
 )
 from yehu_server.core.engine.rig import (
     CONTROLS_AT,
@@ -50,6 +58,7 @@ from yehu_server.core.engine.rig import (
     MAIL_AT,
     METERS_AT,
     MIDI_AT,
+    NOTES_AT,
     POSTED_AT,
     RIG_BYTES,
     RING_SIZES,
@@ -58,18 +67,17 @@ from yehu_server.core.engine.rig import (
     count_parts,
 )
 from yehu_server.core.engine.telemetry import METERS
-from yehu_server.core.midi.events import FINGER_ON, LEAVE, NOTE_OFF, NOTE_ON, RELEASE_ALL
+from yehu_server.core.midi.events import LEAVE, NOTE_OFF, RELEASE_ALL
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import MIDI, NONE
-from yehu_server.core.player.commands import BEGIN, COMMAND, END, LIFT
+from yehu_server.core.player.commands import COMMAND, END, LIFT
 
-NOTHING = -1  # the kind of an event that was cancelled
 # Frames from now that an event may be: the server plays whole scores ahead, other writers play
 # now, so that what is nonsense of theirs fills the heap for seconds at most.
 FARTHEST, FARTHEST_AHEAD = 1 << 40, 1 << 20
 WAITING_BYTES = WAITING.itemsize
-SCANNED = 64  # waiting events that are looked at for the price of a command
+SLOT_BYTES = SLOTS_PER_EVENT * NOTES.itemsize
 
 
 @native
@@ -113,16 +121,18 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
         kind, index, value, other = event.kind, event.index, event.value, event.other
         pop(queue, mail.pending[number])
         count_event(mail, queue, number, -1)
-        price = 1
-        if kind in (NOTE_OFF, END):
-            if order <= mail.behind[number] and find_key(m, index, value) == NONE:
-                price += cancel(queue, mail.pending[number], order, index, value) // SCANNED
+        price, is_cancelled = 1, False
+        if kind in STARTS:
+            is_cancelled = take_note(notes_of(rig, number), mail.secret, order, index, value)
+            is_cancelled = is_cancelled or order < mail.released
+        elif kind in (NOTE_OFF, END):
+            if find_key(m, index, value) == NONE:
+                end_notes(notes_of(rig, number), mail.secret, order, index, value)
         elif kind == RELEASE_ALL:
             mail.released = max(mail.released, order)
-        is_released = order < mail.released and kind in (NOTE_ON, FINGER_ON, BEGIN)
-        if kind != NOTHING and not is_released:
+        if not is_cancelled:
             interpret(m, at(rig, TABLES_AT), frame, kind, index, value, other)
-            price += max(0, m.commands - 1)
+            price = max(1, m.commands)
             hand_over(rigs, part, m)
         spend(mail.interpreting, frame, price)
         mail.finish_tag[number] = mail.virtual_time + price
@@ -136,6 +146,13 @@ def events_of(rig: Any, number: int) -> Any:
     """The entries of a queue of events."""
     start = EVENTS_AT + QUEUE_STARTS[number] * WAITING_BYTES
     return carray(at(rig, start), (QUEUE_SIZES[number],), WAITING)
+
+
+@compiled_with_aliasing
+def notes_of(rig: Any, number: int) -> Any:
+    """The index of the note-ons that wait in a queue."""
+    start = NOTES_AT + QUEUE_STARTS[number] * SLOT_BYTES
+    return carray(at(rig, start), (SLOTS_PER_EVENT * QUEUE_SIZES[number],), NOTES)
 
 
 @compiled_with_aliasing
@@ -199,6 +216,7 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
         while drained < last:
             event = ring[drained & (size - 1)]
             frame, kind, number = event.frame, event.kind, writer
+            index, value = event.index, event.value
             sender = kind >> KIND_BITS
             if writer == PAGES or (writer == SERVER and 0 < sender <= SENDER_QUEUES):
                 number = queue_of(writer, sender)
@@ -215,10 +233,9 @@ def drain(rigs: Any, rig: Any, mail: Any, now: int) -> None:
             mail.late[writer] += 1 if frame < now else 0
             mail.most_late[writer] = max(mail.most_late[writer], now - frame)
             queue, pending = events_of(rig, number), mail.pending[number]
-            if pending > 0 and frame < mail.latest[number]:
-                mail.behind[number] = mail.ordered
-            mail.latest[number] = max(mail.latest[number], frame) if pending > 0 else frame
-            push(queue, pending, frame, kind, event.index, event.value, event.other, mail.ordered)
+            if kind in STARTS:
+                add_note(notes_of(rig, number), mail.secret, index, value)
+            push(queue, pending, frame, kind, index, value, event.other, mail.ordered)
             count_event(mail, queue, number, 1)
             mail.ordered += 1
         store_release(rig, DRAINED_AT + writer * CURSOR_BYTES, drained)
@@ -289,24 +306,15 @@ def hand_over(rigs: Any, part: int, m: Any) -> None:
         mail.ordered += 1
 
 
-@compiled_with_aliasing
-def cancel(events: Any, pending: int, order: int, channel: int, key: float) -> int:
-    """Cancel scheduled note-ons of a key whose note-off arrives before they begin.
-
-    Parameters
-    ----------
-    order : int
-        Of the event that ends it: what was posted later stays.
-
-    Returns
-    -------
-    scanned : int
-        Number of events that were looked at: all of the queue.
-    """
-    for n in range(pending):
-        event = events[n].command
-        if event.kind not in (NOTE_ON, FINGER_ON, BEGIN) or events[n].order > order:
-            continue
-        if event.index == channel and event.value == key:
-            event.kind = NOTHING
-    return pending
+@native
+def index_notes(rig: Any) -> int:
+    """Index all note-ons that wait, anew; return how many there are."""
+    mail, count = record_at(rig, MAIL_AT, MAIL), 0
+    for number in range(QUEUES):
+        queue = events_of(rig, number)
+        for n in range(mail.pending[number]):
+            event = queue[n].command
+            if event.kind in STARTS:
+                add_note(notes_of(rig, number), mail.secret, event.index, event.value)
+                count += 1
+    return count

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from ctypes import addressof, c_float
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from yehu_server.core.controls.record import jump_to_targets, prepare_controls
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.engine import native
-from yehu_server.core.engine.event_dispatch import interpret_events
+from yehu_server.core.engine.event_dispatch import index_notes, interpret_events
 from yehu_server.core.engine.mailbox import (
     FIRST_SENDER,
     KIND_BITS,
@@ -89,6 +90,7 @@ class Instrument:
         self._rig["model"] = kernel.prepare(spec.quantities, spec.rate, MAX_FINGERS)
         self._rig["mail"]["intake"] = LIVE_INTAKE if is_live else RING
         self._rig["mail"]["at_once"] = LIVE_BUDGET if is_live else UNLIMITED
+        self._rig["mail"]["secret"] = secrets.randbits(62) if is_live else 0
         if self._stage is not None:
             self._rig["parts"][0, 0] = 1
             prepare_stage(self._stage[0], spec.rate, channels, has_room=False)
@@ -125,7 +127,10 @@ class Instrument:
         if self._stage is not None:
             clear_stage(self._stage[0])
         mail = rig["mail"]
-        kept = {name: mail[name].copy() for name in ("intake", "at_once", "reporting", "delay")}
+        stays = ("intake", "at_once", "reporting", "delay", "secret")
+        kept = {name: mail[name].copy() for name in stays}
+        if mail["pending_events"]:
+            rig["notes"] = 0
         mail[:] = np.zeros(1, mail.dtype)
         for name, number in kept.items():
             mail[name] = number
@@ -357,7 +362,8 @@ class Instrument:
         self._rig["version"][0, 0] += self._rig["version"][0, 0] % 2
         self._rig["meters"]["running"] = 0
         mail = self._rig["mail"][0]
-        repair_queues(self._rig["events"][0], mail)
+        repair_queues(self._rig["events"][0], self._rig["notes"][0], mail)
+        index_notes.call(self._address)
         mail["waiting"] = repair(self._rig["heap"][0], int(mail["waiting"]))
 
     def skip_to(self, frame: int) -> None:

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.player.commands import COMMAND
+from yehu_server.core.midi.events import FINGER_ON, NOTE_ON
+from yehu_server.core.player.commands import BEGIN, COMMAND
 
 Array = Any
 
@@ -25,7 +26,7 @@ ROOM = 1 << 12  # entries that a heap of commands has room for before another ev
 APPLIED_AT_ONCE = 64  # commands at one frame; the rest waits for the next
 # What a live instrument does at once: events moved from each ring for each 64 frames, and commands
 # (`ready_at`). Without limit offline.
-LIVE_INTAKE, LIVE_BUDGET, BUDGET_PER_FRAME = 1 << 10, 1 << 8, 3
+LIVE_INTAKE, LIVE_BUDGET, BUDGET_PER_FRAME = 1 << 10, 1 << 7, 6
 UNLIMITED = 1 << 40
 # The writers of events. Inputs give the time of arrival (ns) in place of a frame; pages put their
 # number above the KIND_BITS of a kind, and the server that of the sender (0: itself).
@@ -36,6 +37,7 @@ KIND_BITS = 8
 # another's.
 PAGE_QUEUES, PAGE_QUEUE = 64, 1 << 8
 SENDER_QUEUES, SENDER_QUEUE = 8, 1 << 11
+STARTS = (NOTE_ON, FINGER_ON, BEGIN)  # kinds of events that begin a note
 RESERVE = 8  # entries of these, for the ends of what a page or sender played
 FIRST_SENDER = PAGES + PAGE_QUEUES
 QUEUES = FIRST_SENDER + SENDER_QUEUES
@@ -67,13 +69,12 @@ MAIL = np.dtype(
         ("ordered", np.int64),  # number of events and commands that came into a heap
         ("pending", np.int64, QUEUES),  # events in each queue, and the frame of the first
         ("first", np.int64, QUEUES),
-        ("latest", np.int64, QUEUES),  # frame of any event since it was empty
-        ("behind", np.int64, QUEUES),  # order of the last one posted after a later frame's
         ("pending_events", np.int64),  # events in all queues
         # Fair queueing (`next_queue`), in commands: finish tag of each queue, and virtual time.
         ("finish_tag", np.int64, QUEUES),
         ("virtual_time", np.int64),
         ("released", np.int64),  # note-ons that were posted before this one are not played
+        ("secret", np.int64),  # of the index of note-ons (`note_index`)
         ("waiting", np.int64),  # entries in the heap of commands
         ("reporting", np.int64),
         ("intake", np.int64),  # events moved from each ring at a time
@@ -98,14 +99,26 @@ def repair(heap: Array, count: int) -> int:
     return len(entries)
 
 
-def repair_queues(events: Array, mail: Any) -> None:
-    """Put all queues of events in order again; see `repair`."""
+def repair_queues(events: Array, notes: Array, mail: Any) -> None:
+    """Put all queues of events in order again, without note-ons that were cancelled.
+
+    It empties the index of note-ons (``note_index``); see `repair`.
+    """
+    slots = len(notes) // len(events)
     for queue in range(QUEUES):
-        start = QUEUE_STARTS[queue]
-        heap = events[start : start + QUEUE_SIZES[queue]]
-        mail["pending"][queue] = repair(heap, int(mail["pending"][queue]))
-        mail["first"][queue] = heap["command"]["frame"][0]
+        start, size = QUEUE_STARTS[queue], QUEUE_SIZES[queue]
+        heap = events[start : start + size]
+        count = repair(heap, int(mail["pending"][queue]))
+        keys = notes[slots * start : slots * (start + size)]
+        for key in keys[(keys["waiting"] > 0) & (keys["ended"] > 0)]:
+            command, order = heap["command"][:count], heap["order"][:count]
+            its = (command["index"] == key["channel"]) & (command["value"] == key["key"])
+            its &= np.isin(command["kind"], STARTS) & (order < key["ended"])
+            count -= its.sum()
+            heap[:count] = heap[: len(its)][~its]
+        mail["pending"][queue], mail["first"][queue] = count, heap["command"]["frame"][0]
     mail["pending_events"] = mail["pending"].sum()
+    notes[:] = np.zeros(1, notes.dtype)
 
 
 @compiled

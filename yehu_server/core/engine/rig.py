@@ -22,6 +22,7 @@ from yehu_server.core.engine.mailbox import (
     SMALL_RING,
     WAITING,
 )
+from yehu_server.core.engine.note_index import NOTES, SLOTS_PER_EVENT
 from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.engine.telemetry import METERS
 from yehu_server.core.midi.record import MIDI
@@ -56,6 +57,7 @@ RIG = lined_up(
         ("sound_ring", COMMAND, SMALL_RING),
         ("page_ring", COMMAND, SMALL_RING),
         ("events", WAITING, QUEUE_SIZES.sum()),
+        ("notes", NOTES, SLOTS_PER_EVENT * QUEUE_SIZES.sum()),
         ("midi", MIDI),
         ("tables", TABLES, TABLE_SLOTS),
         ("heap", WAITING, HEAP),  # commands to come
@@ -90,6 +92,7 @@ VERSION_AT, PUBLISHED_AT, TAPED_AT = _offset("version"), _offset("published"), _
 RINGS_AT = np.array([_offset(f"{of}ring") for of in ("midi_", "", "sound_", "page_")])  # by writer
 RING_SIZES = np.array([SMALL_RING, RING, SMALL_RING, SMALL_RING])
 EVENTS_AT, MIDI_AT, TABLES_AT = _offset("events"), _offset("midi"), _offset("tables")
+NOTES_AT = _offset("notes")
 HEAP_AT, REPORTS_AT = _offset("heap"), _offset("reports")
 SEAT_AT = _offset("seat")
 KERNEL_AT, REFINED_AT = _offset("kernel"), _offset("refined")

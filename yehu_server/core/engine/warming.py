@@ -13,6 +13,7 @@ from yehu_server.compile import machine_code
 from yehu_server.compile.cache_folder import IS_CACHED
 from yehu_server.compile.jit import IS_PLAIN, Native, with_called
 from yehu_server.compile.worker_processes import Progress, compile_apart
+from yehu_server.core.engine.event_dispatch import index_notes
 from yehu_server.core.engine.mixing import mix_block
 from yehu_server.core.engine.native import (
     callback,
@@ -28,7 +29,7 @@ from yehu_server.core.physics.kernel import derive
 
 CALLED = (
     callback, sound_block, mix_block, derive, post, post_from, frame_at, read_meters, read_reports,
-    taped,
+    taped, index_notes,
 )  # fmt: skip
 
 Compiled = Mapping[str, Sequence[Native]]

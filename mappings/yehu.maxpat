@@ -12623,17 +12623,17 @@
       104,
       48
      ],
-     "varname": "/body/brilliance",
+     "varname": "/body/sway",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/body/brilliance",
-       "parameter_shortname": "brilliance",
-       "parameter_mmin": -24.0,
-       "parameter_mmax": 24.0,
+       "parameter_longname": "/body/sway",
+       "parameter_shortname": "sway",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f dB"
+       "parameter_units": "%.3f"
       }
      }
     }
@@ -12650,7 +12650,7 @@
       104,
       22
      ],
-     "text": "-24 to 24 dB",
+     "text": "0 to 1",
      "presentation": 1,
      "presentation_rect": [
       352,
@@ -12689,14 +12689,14 @@
      "patching_rect": [
       117.0,
       5976,
-      203,
+      161,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/brilliance"
+     "text": "route /yehu/body/sway"
     }
    },
    {
@@ -12706,7 +12706,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      344.0,
+      302.0,
       5976,
       91,
       22
@@ -12726,13 +12726,13 @@
      "patching_rect": [
       16.0,
       6006,
-      112,
+      126,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0"
+     "text": "loadmess set 0.5"
     }
    },
    {
@@ -12742,15 +12742,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      152.0,
+      166.0,
       6006,
-      217,
+      175,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/brilliance"
+     "text": "prepend /yehu/body/sway"
     }
    },
    {
@@ -12760,7 +12760,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      365.0,
       6006,
       98,
       22
@@ -12792,17 +12792,17 @@
       104,
       48
      ],
-     "varname": "/body/brilliance_frequency",
+     "varname": "/body/brilliance",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/body/brilliance_frequency",
-       "parameter_shortname": "brilliance frequency",
-       "parameter_mmin": 200.0,
-       "parameter_mmax": 8000.0,
+       "parameter_longname": "/body/brilliance",
+       "parameter_shortname": "brilliance",
+       "parameter_mmin": -24.0,
+       "parameter_mmax": 24.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f Hz"
+       "parameter_units": "%.3f dB"
       }
      }
     }
@@ -12819,7 +12819,7 @@
       104,
       22
      ],
-     "text": "200 to 8000 Hz",
+     "text": "-24 to 24 dB",
      "presentation": 1,
      "presentation_rect": [
       464,
@@ -12858,14 +12858,14 @@
      "patching_rect": [
       117.0,
       6036,
-      273,
+      203,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/brilliance_frequency"
+     "text": "route /yehu/body/brilliance"
     }
    },
    {
@@ -12875,7 +12875,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      414.0,
+      344.0,
       6036,
       91,
       22
@@ -12895,13 +12895,13 @@
      "patching_rect": [
       16.0,
       6066,
-      133,
+      112,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 1300"
+     "text": "loadmess set 0"
     }
    },
    {
@@ -12911,15 +12911,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      173.0,
+      152.0,
       6066,
-      287,
+      217,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/brilliance_frequency"
+     "text": "prepend /yehu/body/brilliance"
     }
    },
    {
@@ -12929,7 +12929,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      484.0,
+      393.0,
       6066,
       98,
       22
@@ -12961,17 +12961,17 @@
       104,
       48
      ],
-     "varname": "/body/evenness",
+     "varname": "/body/brilliance_frequency",
      "parameter_enable": 1,
      "saved_attribute_attributes": {
       "valueof": {
-       "parameter_longname": "/body/evenness",
-       "parameter_shortname": "evenness",
-       "parameter_mmin": 0.0,
-       "parameter_mmax": 1.0,
+       "parameter_longname": "/body/brilliance_frequency",
+       "parameter_shortname": "brilliance frequency",
+       "parameter_mmin": 200.0,
+       "parameter_mmax": 8000.0,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
-       "parameter_units": "%.3f"
+       "parameter_units": "%.3f Hz"
       }
      }
     }
@@ -12988,7 +12988,7 @@
       104,
       22
      ],
-     "text": "0 to 1",
+     "text": "200 to 8000 Hz",
      "presentation": 1,
      "presentation_rect": [
       576,
@@ -13027,14 +13027,14 @@
      "patching_rect": [
       117.0,
       6096,
-      189,
+      273,
       22
      ],
      "outlettype": [
       "",
       ""
      ],
-     "text": "route /yehu/body/evenness"
+     "text": "route /yehu/body/brilliance_frequency"
     }
    },
    {
@@ -13044,7 +13044,7 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      330.0,
+      414.0,
       6096,
       91,
       22
@@ -13064,13 +13064,13 @@
      "patching_rect": [
       16.0,
       6126,
-      126,
+      133,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "loadmess set 0.9"
+     "text": "loadmess set 1300"
     }
    },
    {
@@ -13080,15 +13080,15 @@
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
-      166.0,
+      173.0,
       6126,
-      203,
+      287,
       22
      ],
      "outlettype": [
       ""
      ],
-     "text": "prepend /yehu/body/evenness"
+     "text": "prepend /yehu/body/brilliance_frequency"
     }
    },
    {
@@ -13098,7 +13098,7 @@
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
-      393.0,
+      484.0,
       6126,
       98,
       22
@@ -13110,6 +13110,175 @@
    {
     "box": {
      "id": "obj-621",
+     "maxclass": "live.dial",
+     "numinlets": 1,
+     "numoutlets": 2,
+     "patching_rect": [
+      688,
+      1136,
+      104,
+      48
+     ],
+     "outlettype": [
+      "int/float",
+      "int/float"
+     ],
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      1136,
+      104,
+      48
+     ],
+     "varname": "/body/evenness",
+     "parameter_enable": 1,
+     "saved_attribute_attributes": {
+      "valueof": {
+       "parameter_longname": "/body/evenness",
+       "parameter_shortname": "evenness",
+       "parameter_mmin": 0.0,
+       "parameter_mmax": 1.0,
+       "parameter_type": 0,
+       "parameter_unitstyle": 9,
+       "parameter_units": "%.3f"
+      }
+     }
+    }
+   },
+   {
+    "box": {
+     "id": "obj-622",
+     "maxclass": "comment",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      688,
+      1186,
+      104,
+      22
+     ],
+     "text": "0 to 1",
+     "presentation": 1,
+     "presentation_rect": [
+      688,
+      1186,
+      104,
+      22
+     ],
+     "textjustification": 1,
+     "fontsize": 9.0
+    }
+   },
+   {
+    "box": {
+     "id": "obj-623",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6156,
+      77,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "r yehu.in"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-624",
+     "maxclass": "newobj",
+     "numinlets": 2,
+     "numoutlets": 2,
+     "patching_rect": [
+      117.0,
+      6156,
+      189,
+      22
+     ],
+     "outlettype": [
+      "",
+      ""
+     ],
+     "text": "route /yehu/body/evenness"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-625",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      330.0,
+      6156,
+      91,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend set"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-626",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      16.0,
+      6186,
+      126,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "loadmess set 0.9"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-627",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 1,
+     "patching_rect": [
+      166.0,
+      6186,
+      203,
+      22
+     ],
+     "outlettype": [
+      ""
+     ],
+     "text": "prepend /yehu/body/evenness"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-628",
+     "maxclass": "newobj",
+     "numinlets": 1,
+     "numoutlets": 0,
+     "patching_rect": [
+      393.0,
+      6186,
+      98,
+      22
+     ],
+     "outlettype": [],
+     "text": "s yehu.moved"
+    }
+   },
+   {
+    "box": {
+     "id": "obj-629",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13132,7 +13301,7 @@
    },
    {
     "box": {
-     "id": "obj-622",
+     "id": "obj-630",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13170,7 +13339,7 @@
    },
    {
     "box": {
-     "id": "obj-623",
+     "id": "obj-631",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13194,13 +13363,13 @@
    },
    {
     "box": {
-     "id": "obj-624",
+     "id": "obj-632",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6156,
+      6216,
       77,
       22
      ],
@@ -13212,13 +13381,13 @@
    },
    {
     "box": {
-     "id": "obj-625",
+     "id": "obj-633",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6156,
+      6216,
       161,
       22
      ],
@@ -13231,13 +13400,13 @@
    },
    {
     "box": {
-     "id": "obj-626",
+     "id": "obj-634",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       302.0,
-      6156,
+      6216,
       91,
       22
      ],
@@ -13249,13 +13418,13 @@
    },
    {
     "box": {
-     "id": "obj-627",
+     "id": "obj-635",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6186,
+      6246,
       112,
       22
      ],
@@ -13267,13 +13436,13 @@
    },
    {
     "box": {
-     "id": "obj-628",
+     "id": "obj-636",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6186,
+      6246,
       175,
       22
      ],
@@ -13285,13 +13454,13 @@
    },
    {
     "box": {
-     "id": "obj-629",
+     "id": "obj-637",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       351.0,
-      6186,
+      6246,
       98,
       22
      ],
@@ -13301,7 +13470,7 @@
    },
    {
     "box": {
-     "id": "obj-630",
+     "id": "obj-638",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13339,7 +13508,7 @@
    },
    {
     "box": {
-     "id": "obj-631",
+     "id": "obj-639",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13363,13 +13532,13 @@
    },
    {
     "box": {
-     "id": "obj-632",
+     "id": "obj-640",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6216,
+      6276,
       77,
       22
      ],
@@ -13381,13 +13550,13 @@
    },
    {
     "box": {
-     "id": "obj-633",
+     "id": "obj-641",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6216,
+      6276,
       168,
       22
      ],
@@ -13400,13 +13569,13 @@
    },
    {
     "box": {
-     "id": "obj-634",
+     "id": "obj-642",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      6216,
+      6276,
       91,
       22
      ],
@@ -13418,13 +13587,13 @@
    },
    {
     "box": {
-     "id": "obj-635",
+     "id": "obj-643",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6246,
+      6306,
       126,
       22
      ],
@@ -13436,13 +13605,13 @@
    },
    {
     "box": {
-     "id": "obj-636",
+     "id": "obj-644",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      6246,
+      6306,
       182,
       22
      ],
@@ -13454,13 +13623,13 @@
    },
    {
     "box": {
-     "id": "obj-637",
+     "id": "obj-645",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       372.0,
-      6246,
+      6306,
       98,
       22
      ],
@@ -13470,7 +13639,7 @@
    },
    {
     "box": {
-     "id": "obj-638",
+     "id": "obj-646",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13508,7 +13677,7 @@
    },
    {
     "box": {
-     "id": "obj-639",
+     "id": "obj-647",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13532,13 +13701,13 @@
    },
    {
     "box": {
-     "id": "obj-640",
+     "id": "obj-648",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6276,
+      6336,
       77,
       22
      ],
@@ -13550,13 +13719,13 @@
    },
    {
     "box": {
-     "id": "obj-641",
+     "id": "obj-649",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6276,
+      6336,
       182,
       22
      ],
@@ -13569,13 +13738,13 @@
    },
    {
     "box": {
-     "id": "obj-642",
+     "id": "obj-650",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       323.0,
-      6276,
+      6336,
       91,
       22
      ],
@@ -13587,13 +13756,13 @@
    },
    {
     "box": {
-     "id": "obj-643",
+     "id": "obj-651",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6306,
+      6366,
       126,
       22
      ],
@@ -13605,13 +13774,13 @@
    },
    {
     "box": {
-     "id": "obj-644",
+     "id": "obj-652",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      6306,
+      6366,
       196,
       22
      ],
@@ -13623,13 +13792,13 @@
    },
    {
     "box": {
-     "id": "obj-645",
+     "id": "obj-653",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       386.0,
-      6306,
+      6366,
       98,
       22
      ],
@@ -13639,7 +13808,7 @@
    },
    {
     "box": {
-     "id": "obj-646",
+     "id": "obj-654",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13677,7 +13846,7 @@
    },
    {
     "box": {
-     "id": "obj-647",
+     "id": "obj-655",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13701,13 +13870,13 @@
    },
    {
     "box": {
-     "id": "obj-648",
+     "id": "obj-656",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6336,
+      6396,
       77,
       22
      ],
@@ -13719,13 +13888,13 @@
    },
    {
     "box": {
-     "id": "obj-649",
+     "id": "obj-657",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6336,
+      6396,
       168,
       22
      ],
@@ -13738,13 +13907,13 @@
    },
    {
     "box": {
-     "id": "obj-650",
+     "id": "obj-658",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       309.0,
-      6336,
+      6396,
       91,
       22
      ],
@@ -13756,13 +13925,13 @@
    },
    {
     "box": {
-     "id": "obj-651",
+     "id": "obj-659",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6366,
+      6426,
       133,
       22
      ],
@@ -13774,13 +13943,13 @@
    },
    {
     "box": {
-     "id": "obj-652",
+     "id": "obj-660",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       173.0,
-      6366,
+      6426,
       182,
       22
      ],
@@ -13792,13 +13961,13 @@
    },
    {
     "box": {
-     "id": "obj-653",
+     "id": "obj-661",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       379.0,
-      6366,
+      6426,
       98,
       22
      ],
@@ -13808,7 +13977,7 @@
    },
    {
     "box": {
-     "id": "obj-654",
+     "id": "obj-662",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -13846,7 +14015,7 @@
    },
    {
     "box": {
-     "id": "obj-655",
+     "id": "obj-663",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -13870,13 +14039,13 @@
    },
    {
     "box": {
-     "id": "obj-656",
+     "id": "obj-664",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6396,
+      6456,
       77,
       22
      ],
@@ -13888,13 +14057,13 @@
    },
    {
     "box": {
-     "id": "obj-657",
+     "id": "obj-665",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6396,
+      6456,
       189,
       22
      ],
@@ -13907,13 +14076,13 @@
    },
    {
     "box": {
-     "id": "obj-658",
+     "id": "obj-666",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       330.0,
-      6396,
+      6456,
       91,
       22
      ],
@@ -13925,13 +14094,13 @@
    },
    {
     "box": {
-     "id": "obj-659",
+     "id": "obj-667",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6426,
+      6486,
       126,
       22
      ],
@@ -13943,13 +14112,13 @@
    },
    {
     "box": {
-     "id": "obj-660",
+     "id": "obj-668",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       166.0,
-      6426,
+      6486,
       203,
       22
      ],
@@ -13961,13 +14130,13 @@
    },
    {
     "box": {
-     "id": "obj-661",
+     "id": "obj-669",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       393.0,
-      6426,
+      6486,
       98,
       22
      ],
@@ -13977,7 +14146,7 @@
    },
    {
     "box": {
-     "id": "obj-662",
+     "id": "obj-670",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -14015,7 +14184,7 @@
    },
    {
     "box": {
-     "id": "obj-663",
+     "id": "obj-671",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -14039,13 +14208,13 @@
    },
    {
     "box": {
-     "id": "obj-664",
+     "id": "obj-672",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6456,
+      6516,
       77,
       22
      ],
@@ -14057,13 +14226,13 @@
    },
    {
     "box": {
-     "id": "obj-665",
+     "id": "obj-673",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6456,
+      6516,
       154,
       22
      ],
@@ -14076,13 +14245,13 @@
    },
    {
     "box": {
-     "id": "obj-666",
+     "id": "obj-674",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       295.0,
-      6456,
+      6516,
       91,
       22
      ],
@@ -14094,13 +14263,13 @@
    },
    {
     "box": {
-     "id": "obj-667",
+     "id": "obj-675",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6486,
+      6546,
       112,
       22
      ],
@@ -14112,13 +14281,13 @@
    },
    {
     "box": {
-     "id": "obj-668",
+     "id": "obj-676",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6486,
+      6546,
       168,
       22
      ],
@@ -14130,13 +14299,13 @@
    },
    {
     "box": {
-     "id": "obj-669",
+     "id": "obj-677",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       344.0,
-      6486,
+      6546,
       98,
       22
      ],
@@ -14146,7 +14315,7 @@
    },
    {
     "box": {
-     "id": "obj-670",
+     "id": "obj-678",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -14169,7 +14338,7 @@
    },
    {
     "box": {
-     "id": "obj-671",
+     "id": "obj-679",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -14207,7 +14376,7 @@
    },
    {
     "box": {
-     "id": "obj-672",
+     "id": "obj-680",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -14231,13 +14400,13 @@
    },
    {
     "box": {
-     "id": "obj-673",
+     "id": "obj-681",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6516,
+      6576,
       77,
       22
      ],
@@ -14249,13 +14418,13 @@
    },
    {
     "box": {
-     "id": "obj-674",
+     "id": "obj-682",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6516,
+      6576,
       224,
       22
      ],
@@ -14268,13 +14437,13 @@
    },
    {
     "box": {
-     "id": "obj-675",
+     "id": "obj-683",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       365.0,
-      6516,
+      6576,
       91,
       22
      ],
@@ -14286,13 +14455,13 @@
    },
    {
     "box": {
-     "id": "obj-676",
+     "id": "obj-684",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6546,
+      6606,
       112,
       22
      ],
@@ -14304,13 +14473,13 @@
    },
    {
     "box": {
-     "id": "obj-677",
+     "id": "obj-685",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6546,
+      6606,
       238,
       22
      ],
@@ -14322,13 +14491,13 @@
    },
    {
     "box": {
-     "id": "obj-678",
+     "id": "obj-686",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       414.0,
-      6546,
+      6606,
       98,
       22
      ],
@@ -14338,7 +14507,7 @@
    },
    {
     "box": {
-     "id": "obj-679",
+     "id": "obj-687",
      "maxclass": "live.dial",
      "numinlets": 1,
      "numoutlets": 2,
@@ -14376,7 +14545,7 @@
    },
    {
     "box": {
-     "id": "obj-680",
+     "id": "obj-688",
      "maxclass": "comment",
      "numinlets": 1,
      "numoutlets": 0,
@@ -14400,13 +14569,13 @@
    },
    {
     "box": {
-     "id": "obj-681",
+     "id": "obj-689",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6576,
+      6636,
       77,
       22
      ],
@@ -14418,13 +14587,13 @@
    },
    {
     "box": {
-     "id": "obj-682",
+     "id": "obj-690",
      "maxclass": "newobj",
      "numinlets": 2,
      "numoutlets": 2,
      "patching_rect": [
       117.0,
-      6576,
+      6636,
       175,
       22
      ],
@@ -14437,13 +14606,13 @@
    },
    {
     "box": {
-     "id": "obj-683",
+     "id": "obj-691",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       316.0,
-      6576,
+      6636,
       91,
       22
      ],
@@ -14455,13 +14624,13 @@
    },
    {
     "box": {
-     "id": "obj-684",
+     "id": "obj-692",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       16.0,
-      6606,
+      6666,
       112,
       22
      ],
@@ -14473,13 +14642,13 @@
    },
    {
     "box": {
-     "id": "obj-685",
+     "id": "obj-693",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 1,
      "patching_rect": [
       152.0,
-      6606,
+      6666,
       189,
       22
      ],
@@ -14491,13 +14660,13 @@
    },
    {
     "box": {
-     "id": "obj-686",
+     "id": "obj-694",
      "maxclass": "newobj",
      "numinlets": 1,
      "numoutlets": 0,
      "patching_rect": [
       365.0,
-      6606,
+      6666,
       98,
       22
      ],
@@ -20607,6 +20776,19 @@
    {
     "patchline": {
      "source": [
+      "obj-623",
+      0
+     ],
+     "destination": [
+      "obj-624",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-624",
       0
      ],
@@ -20624,7 +20806,7 @@
       0
      ],
      "destination": [
-      "obj-626",
+      "obj-621",
       0
      ],
      "order": 0
@@ -20637,7 +20819,20 @@
       0
      ],
      "destination": [
-      "obj-622",
+      "obj-621",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-621",
+      0
+     ],
+     "destination": [
+      "obj-627",
       0
      ],
      "order": 0
@@ -20650,33 +20845,7 @@
       0
      ],
      "destination": [
-      "obj-622",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-622",
-      0
-     ],
-     "destination": [
       "obj-628",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-628",
-      0
-     ],
-     "destination": [
-      "obj-629",
       0
      ],
      "order": 0
@@ -21075,6 +21244,19 @@
    {
     "patchline": {
      "source": [
+      "obj-672",
+      0
+     ],
+     "destination": [
+      "obj-673",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
       "obj-673",
       0
      ],
@@ -21092,7 +21274,7 @@
       0
      ],
      "destination": [
-      "obj-675",
+      "obj-670",
       0
      ],
      "order": 0
@@ -21105,7 +21287,20 @@
       0
      ],
      "destination": [
-      "obj-671",
+      "obj-670",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-670",
+      0
+     ],
+     "destination": [
+      "obj-676",
       0
      ],
      "order": 0
@@ -21118,33 +21313,7 @@
       0
      ],
      "destination": [
-      "obj-671",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-671",
-      0
-     ],
-     "destination": [
       "obj-677",
-      0
-     ],
-     "order": 0
-    }
-   },
-   {
-    "patchline": {
-     "source": [
-      "obj-677",
-      0
-     ],
-     "destination": [
-      "obj-678",
       0
      ],
      "order": 0
@@ -21223,6 +21392,84 @@
      ],
      "destination": [
       "obj-686",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-689",
+      0
+     ],
+     "destination": [
+      "obj-690",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-690",
+      0
+     ],
+     "destination": [
+      "obj-691",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-691",
+      0
+     ],
+     "destination": [
+      "obj-687",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-692",
+      0
+     ],
+     "destination": [
+      "obj-687",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-687",
+      0
+     ],
+     "destination": [
+      "obj-693",
+      0
+     ],
+     "order": 0
+    }
+   },
+   {
+    "patchline": {
+     "source": [
+      "obj-693",
+      0
+     ],
+     "destination": [
+      "obj-694",
       0
      ],
      "order": 0

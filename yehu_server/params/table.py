@@ -100,6 +100,9 @@ TABLE: tuple[Param, ...] = (
     _engine("/body/width", "", "1", 0.0, 1.0, 0.3,
         "How much the sound of the body differs to both sides, above some 1.5 kHz; 0: not at all.",
         smooth_ms=20.0),
+    _engine("/body/sway", "", "1", 0.0, 1.0, 0.5,
+        "How far the player sways, and turns the body with it, so that partials rise and fall "
+        "apart; 0, or /playing/variation at 0: not at all."),
     _controlled("/body/brilliance", "", "dB", -24.0, 24.0, 0.0,
         "Gain of what lies above /body/brilliance_frequency, from the player's bow: harder and "
         "nearer to the bridge is brighter.", smooth_ms=20.0),

@@ -111,6 +111,7 @@ def tracks(sound: np.ndarray, note: int) -> tuple[np.ndarray, np.ndarray]:
 def strokes(note: int, seed: int) -> list[np.ndarray]:
     """Three separate strokes on one note."""
     playing, found = Playing(seed=seed, variation=0.25), []
+    playing.commands.write("/body/sway", 0.0)  # of which a stroke makes much of the level
     for _ in range(3):
         playing.on(note)
         found.append(playing.sound(0.9))

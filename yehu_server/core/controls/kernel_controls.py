@@ -50,6 +50,7 @@ from yehu_server.core.physics.layout import (
     X_PLUCK,
     Y_B,
 )
+from yehu_server.core.physics.lobes import DIRECTIONS
 
 Array = Any
 
@@ -83,6 +84,8 @@ def advance_drifts(c: Any) -> None:
     for i in range(DRIFT_COUNT):
         c.drift[i] += c.drift_slope[i]
     c.swell += c.swell_slope
+    for k in range(DIRECTIONS):
+        c.turned[k] += c.turned_slope[k]
     if c.frame % POSITION_UPDATE_FRAMES == 0:
         raised = c.drift[CENTS_DRIFT] * PER_CENT
         c.sounding_drift = 1.0 - raised + 0.5 * raised * raised

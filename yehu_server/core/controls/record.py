@@ -19,6 +19,7 @@ from yehu_server.core.controls.slots import (
     UPPER_BOUNDS,
 )
 from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS
+from yehu_server.core.physics.lobes import DIRECTIONS
 from yehu_server.core.physics.quantities import Quantities
 from yehu_server.params.table import ENGINE
 
@@ -64,6 +65,9 @@ CONTROLS = np.dtype(
         ("drifting", np.int64),
         ("swell", np.float64),  # a factor less 1 on the level, and its change in a sample
         ("swell_slope", np.float64),
+        # How far the body is turned into the directions of ``physics.lobes``; the same of it.
+        ("turned", np.float64, DIRECTIONS),
+        ("turned_slope", np.float64, DIRECTIONS),
         ("sounding_drift", np.float64),
         ("position_drift", np.float64),
         ("sounding_from", np.float64),  # m; end of the sounding length, from the loop
@@ -149,4 +153,5 @@ def clear_motion(controls: Any) -> None:
     controls["vibrato_rate_factor"] = controls["vibrato_depth_factor"] = 1.0
     controls["drift"], controls["drift_slope"], controls["drifting"] = 0.0, 0.0, 0
     controls["swell"] = controls["swell_slope"] = 0.0
+    controls["turned"] = controls["turned_slope"] = 0.0
     controls["sounding_drift"] = controls["position_drift"] = 1.0

@@ -22,7 +22,7 @@ BODY, LIMITER = SLOT["/body/gain"], SLOT["/output/limiter"]
 TUNING = np.array([SLOT[f"/string/{name}/tuning"] for name in STRING_NAMES])
 LOSS = np.array([SLOT[f"/string/{name}/loss"] for name in STRING_NAMES])
 NOISE = SLOT["/bow/noise"]
-BRILLIANCE = SLOT["/body/brilliance"]
+BRILLIANCE, SWAY = SLOT["/body/brilliance"], SLOT["/body/sway"]
 BRILLIANCE_FREQUENCY = SLOT["/body/brilliance_frequency"]
 # What the stage needs of a player with each sample, and the columns that it is in.
 STAGE_INPUTS = np.array([

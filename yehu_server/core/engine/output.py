@@ -19,6 +19,13 @@ from yehu_server.core.physics.layout import (
     control_columns,
     probe_columns,
 )
+from yehu_server.core.physics.lobes import (
+    DIRECTIONS,
+    LOBES,
+    clear_lobes,
+    prepare_lobes,
+    radiate_aside,
+)
 from yehu_server.core.physics.shelf import SHELF, prepare_shelf, shelved
 
 Array = Any
@@ -53,6 +60,7 @@ OUTPUT = np.dtype(
         ("pressure", np.float64),  # input and output of the DC blocker (Pa)
         ("dc_free", np.float64),
         ("blocker", np.float64),
+        ("lobes", LOBES),
         ("shelf", SHELF),
         ("sleep", SLEEP),
         ("controls", np.float64, (CHUNK, control_columns(MAX_FINGERS))),
@@ -60,6 +68,7 @@ OUTPUT = np.dtype(
         ("gain", np.float64, CHUNK),
         ("body", np.float64, CHUNK),
         ("blend", np.float64, CHUNK),
+        ("turned", np.float64, (CHUNK, DIRECTIONS)),  # of `lobes`, how much
         ("brilliance", np.float64, CHUNK),  # gain (dB) of the shelf, and its frequency (Hz)
         ("brilliance_frequency", np.float64, CHUNK),
         ("sounded", SOUNDED),
@@ -73,6 +82,7 @@ def prepare_output(output: Any, rate: float) -> None:
     output["invalid_samples"], output["sounded"]["silenced_at"] = 0, NOT_SILENCED
     output["decay"] = pole_of_time(FADE_S, rate)
     output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
+    prepare_lobes(output["lobes"], rate)
     prepare_shelf(output["shelf"], rate)
     rest_output(output)
 
@@ -82,6 +92,8 @@ def rest_output(output: Any) -> None:
     for name in ("last", "fading", "pressure", "dc_free"):
         output[name] = 0.0
     output["shelf"]["held"] = 0.0
+    for name in ("passed", "before", "line"):
+        output["lobes"][name] = 0.0
     wake_up(output["sleep"])
 
 
@@ -90,6 +102,7 @@ def clear_filters(o: Any) -> None:
     """Clear the filters' states, when the model is put to rest. Real time: safe."""
     o.pressure, o.dc_free, o.fading = 0.0, 0.0, 0.0
     o.shelf.held[0], o.shelf.held[1] = 0.0, 0.0
+    clear_lobes(o.lobes)
 
 
 @compiled
@@ -104,7 +117,9 @@ def output_sample(o: Any, n: int) -> float:
         o.pressure, o.dc_free = 0.0, 0.0
     o.fading *= o.decay
     # The DC blocker also removes the static pull of a finger at the bridge.
-    radiated = o.body[n] * probe[PRESSURE]
+    ahead = o.body[n] * probe[PRESSURE]
+    first, second = radiate_aside(o.lobes, ahead)
+    radiated = ahead + (o.turned[n, 0] * first + o.turned[n, 1] * second)
     source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
     o.dc_free = source - o.pressure + o.blocker * o.dc_free
     o.pressure = source

@@ -138,6 +138,7 @@ def write_row(c: Any, o: Any, n: int) -> bool:
     o.gain[n] = gain
     o.body[n] = amplitude(c, TO_BODY, c.value[BODY])
     o.blend[n] = c.value[BLEND]
+    o.turned[n, 0], o.turned[n, 1] = c.turned[0], c.turned[1]
     o.brilliance[n] = c.value[BRILLIANCE]
     o.brilliance_frequency[n] = c.value[BRILLIANCE_FREQUENCY]
     return silenced

@@ -71,7 +71,7 @@ OPEN_PEAK_S, OPEN_EASE_S = 0.45, 2.5
 SMALL_S, WHOLE_S = 0.12, 0.45  # lengths of a note that has no arch, and of one that has all of it
 BEATING = 0.7  # share of it under a finger that beats or slides
 LIGHT = 0.4  # share of the force's where the bow is to be light or to scratch
-LOUDER = 0.6  # the level is this power of the speed, beside what the speed does
+LOUDER = 1.1  # the level is this power of the speed, beside what the speed does
 # Harder and nearer is brighter (``brilliance``): the shelf's decibels for an octave of the
 # centroid, and the most; changes that are not heard.
 SHELF_DB, MAX_SHELF_DB, FINE_DB = 13.0, 5.0, 0.02

@@ -20,6 +20,7 @@ from yehu_server.core.player.ear import DELAY_FRAMES, EAR_SAMPLES, hear
 from yehu_server.core.player.notes import is_touched, reverse_bow_at_end, sounding_pitch
 from yehu_server.core.player.parameter_indices import LISTENING
 from yehu_server.core.player.record import Player
+from yehu_server.core.player.sway import advance_sway
 from yehu_server.core.player.tuning_by_ear import tune
 
 
@@ -71,6 +72,7 @@ def update_player(p: Player, c: Controls, sound: Any) -> None:
     p.ear.next += p.ear.hop
     advance_contours(p, c)
     advance_drift(p, c)
+    advance_sway(p, c)
     vary_vibrato(p, c)
     articulate(p, c)
     reverse_bow_at_end(p, c)

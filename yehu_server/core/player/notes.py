@@ -69,6 +69,7 @@ from yehu_server.core.player.phrasing import (
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.right_hand import SLURRED_MS, requested_speed
 from yehu_server.core.player.stroke import CHANGE_MS, is_at_its_end, plan_stroke
+from yehu_server.core.player.sway import swing
 from yehu_server.core.player.tuning_by_ear import begin_tuning
 from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
@@ -156,6 +157,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     begin_gesture(p, c, is_slur)
     turns = plan_stroke(p, c, requested_speed(p), is_legato)
     contours.begin_contours(p, c, is_slur)
+    swing(p, is_slur)
     slide_ms = 0.0 if at_once and not is_touched(p) else slide_into_note_ms(p, c)
     was, p.note_began = p.finger_pitch, c.frame
     if slide_ms > 0.0 and p.string >= 0:

@@ -38,6 +38,7 @@ from yehu_server.core.player.parameter_indices import (
     PLUCK_FORCE,
     SLOT_OF,
 )
+from yehu_server.core.player.sway import SWAY_STATE
 from yehu_server.core.player.vibrato_table import STEPS, vibrato_table
 from yehu_server.params.table import TABLE
 
@@ -119,6 +120,7 @@ PLAYER = np.dtype(
         ("random_count", np.int64),  # drawn so far
         ("drift_state", DRIFT_STATE),  # drift and tremor
         ("contours", CONTOURS),  # of the bow
+        ("sway", SWAY_STATE),
         # The instrument.
         ("bridge_x", np.float64),  # m
         ("a4", np.float64),  # Hz
@@ -227,5 +229,6 @@ def end_all(player: Any, controls: Any) -> None:
     player["direction"], player["stroke_speed_factor"] = UP, 1.0
     player["gesture"] = RESTING
     player["drift_state"], player["contours"] = np.zeros((), DRIFT_STATE), np.zeros((), CONTOURS)
+    player["sway"] = np.zeros((), SWAY_STATE)
     for index in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):
         controls["target"][SLOT_OF[index]] = 0.0

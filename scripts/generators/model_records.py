@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from yehu_server.core.physics import layout, modal_string, planes
-from yehu_server.core.physics.power import TABLES as POWER_TABLES
+from yehu_server.core.physics.fixed_power import TABLES as POWER_TABLES
 
 KINDS = {
     "Tables": (POWER_TABLES, "Tables of one power, power.py."),

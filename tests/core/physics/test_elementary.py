@@ -12,7 +12,7 @@ from yehu_server.core.physics.elementary import (
     kernel_sincospi,
     one_minus_inverse_root,
 )
-from yehu_server.core.physics.power import INTERVALS, TABLES, power, prepare_power
+from yehu_server.core.physics.fixed_power import INTERVALS, TABLES, power, prepare_power
 
 # The error of a polynomial, and half a unit for each rounding of its last sums and products;
 # processors that fuse multiply and add have fewer. The C library rounds too.

@@ -19,7 +19,7 @@ import numpy as np
 
 from yehu_server.compile.jit import IS_PLAIN, compiled
 from yehu_server.compile.memory import with_attributes
-from yehu_server.core.physics.power import TABLES
+from yehu_server.core.physics.fixed_power import TABLES
 
 STRINGS = 2
 MAX_INTERVALS = 512  # of one string's grid; 0.38 m of silk at 192 kHz take about 130

@@ -13,9 +13,9 @@ from __future__ import annotations
 
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.finger import limited_gradient
+from yehu_server.core.physics.fixed_power import power
 from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import BOW
-from yehu_server.core.physics.power import power
 from yehu_server.core.physics.records import Contacts, Model, Motion, Planes, Work
 
 

@@ -23,7 +23,6 @@ from yehu_server.core.controls.record import (
     SPEED_DRIFT,
 )
 from yehu_server.core.physics.elementary import cos, elementwise, exp, pseudorandom
-from yehu_server.core.player.contours import QUANTITIES
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.parameter_indices import (
     BOW_FORCE,
@@ -35,6 +34,7 @@ from yehu_server.core.player.parameter_indices import (
     PHRASING,
     VARIATION,
 )
+from yehu_server.core.player.stroke_contours import QUANTITIES
 
 # Standard deviations at full variation, in the order of ``controls.record``. By ear.
 DRIFT = np.array((0.06, 0.06, 0.04, 4.8, 0.06))

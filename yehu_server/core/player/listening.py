@@ -14,12 +14,12 @@ from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
-from yehu_server.core.player.contours import advance_contours
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import DELAY_FRAMES, EAR_SAMPLES, hear
 from yehu_server.core.player.notes import is_touched, reverse_bow_at_end, sounding_pitch
 from yehu_server.core.player.parameter_indices import LISTENING
 from yehu_server.core.player.record import Player
+from yehu_server.core.player.stroke_contours import advance_contours
 from yehu_server.core.player.sway import advance_sway
 from yehu_server.core.player.tuning_by_ear import tune
 

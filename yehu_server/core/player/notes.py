@@ -11,7 +11,8 @@ from typing import Any
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import start_ramp
 from yehu_server.core.controls.slots import SILENCE, SPEED
-from yehu_server.core.player import contours, left_hand, right_hand, velocity, vibrato
+from yehu_server.core.player import left_hand, right_hand, stroke_contours, velocity, vibrato
+from yehu_server.core.player.bow_length import CHANGE_MS, is_at_its_end, plan_stroke
 from yehu_server.core.player.bowing import MIN_PRESS, bowing_value
 from yehu_server.core.player.bowing_by_ear import begin_pressure_correction
 from yehu_server.core.player.fingering import OPEN, choose, choose_for_slide, learnt_position, stay
@@ -68,7 +69,6 @@ from yehu_server.core.player.phrasing import (
 )
 from yehu_server.core.player.record import SILENT
 from yehu_server.core.player.right_hand import SLURRED_MS, requested_speed
-from yehu_server.core.player.stroke import CHANGE_MS, is_at_its_end, plan_stroke
 from yehu_server.core.player.sway import swing
 from yehu_server.core.player.tuning_by_ear import begin_tuning
 from yehu_server.params.spec import TURNED_ON
@@ -121,7 +121,7 @@ def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
     else:
         p.sounding = SILENT
         release_ms = p.value[RELEASE] * hurried(p, HURRIED_RELEASE)
-        contours.end_contours(p, c, release_ms)
+        stroke_contours.end_contours(p, c, release_ms)
         right_hand.lift(p, c, release_ms)
         vibrato.end_vibrato(p, c)
 
@@ -156,7 +156,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     p.stroke_speed_factor = 1.0
     begin_gesture(p, c, is_slur)
     turns = plan_stroke(p, c, requested_speed(p), is_legato)
-    contours.begin_contours(p, c, is_slur)
+    stroke_contours.begin_contours(p, c, is_slur)
     swing(p, is_slur)
     slide_ms = 0.0 if at_once and not is_touched(p) else slide_into_note_ms(p, c)
     was, p.note_began = p.finger_pitch, c.frame

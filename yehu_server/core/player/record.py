@@ -16,7 +16,6 @@ from yehu_server.core.player.bowing import (
     default_bowing_table,
 )
 from yehu_server.core.player.bowing import NOTES as NOTES_BOWED
-from yehu_server.core.player.contours import CONTOURS
 from yehu_server.core.player.drift import DRIFT_STATE
 from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
@@ -38,6 +37,7 @@ from yehu_server.core.player.parameter_indices import (
     PLUCK_FORCE,
     SLOT_OF,
 )
+from yehu_server.core.player.stroke_contours import CONTOURS
 from yehu_server.core.player.sway import SWAY_STATE
 from yehu_server.core.player.vibrato_table import STEPS, vibrato_table
 from yehu_server.params.table import TABLE

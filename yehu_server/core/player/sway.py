@@ -16,9 +16,9 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SWAY
 from yehu_server.core.physics.elementary import tanh
 from yehu_server.core.physics.lobes import DIRECTIONS
-from yehu_server.core.player.contours import CONTOURS_FROM, SEGMENT, follow, go
 from yehu_server.core.player.parameter_indices import NOTE_LENGTH, VARIATION
 from yehu_server.core.player.phrasing import chance
+from yehu_server.core.player.stroke_contours import CONTOURS_FROM, SEGMENT, follow, go
 from yehu_server.params.table import find
 
 # The sizes below are those at the default of /body/sway. By ear, and by how far partials move in

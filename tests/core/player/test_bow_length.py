@@ -6,7 +6,7 @@ from held_notes import HOP, RATE, Playing
 
 from yehu_server.core.controls.slots import SHARE
 from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
-from yehu_server.core.player.stroke import END_FRACTION, MIN_SPEED_FACTOR
+from yehu_server.core.player.bow_length import END_FRACTION, MIN_SPEED_FACTOR
 
 LENGTH, SPEED = 0.7, 0.2
 

@@ -22,7 +22,8 @@ from yehu_server.core.physics.grid import MAX_RATE
 DIRECTIONS = 2
 DELAYS_S = (4.07e-3, 6.29e-3)  # of the all-pass filters; no small whole numbers fit both
 REFLECTED = 0.5
-FROM_HZ, PASSES = 700.0, 2  # by ear: above it the shell is larger than a sixth of a wavelength
+# From lower on, fundamentals would turn their phase as the player sways, and be out of tune.
+FROM_HZ, PASSES = 1400.0, 2
 MAX_DELAY = math.ceil(MAX_RATE * max(DELAYS_S))
 
 LOBES = np.dtype(

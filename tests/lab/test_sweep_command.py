@@ -102,7 +102,7 @@ def test_a_wrong_call_is_reported_in_a_line_before_anything_runs(gesture, study,
         ((gesture, "--vary", "bow_farce=1"), "bow_farce: unknown entry"),
         ((gesture, "--vary", "bow_force=1:2"), "expected numbers"),
         ((gesture,), "nothing is varied"),
-        ((refined, "--signals", tmp_path / "runs"), "a study that is refined keeps none"),
+        ((refined, "--signals", tmp_path / "runs"), "a study with [refine] keeps no signals"),
         ((study, "--signals", study), "File exists"),
     ):
         assert wrong in refused("sweep", "-o", tmp_path / "found.npz", *words)

@@ -32,8 +32,12 @@ class Record(np.record):  # type: ignore[misc]  # NumPy's stubs call it final
 
 def with_attributes(kind: np.dtype[Any]) -> np.dtype[Any]:
     """Return a record type whose records, and those nested in them, are `Record`."""
+    if not kind.base.names:
+        return kind
+    if kind.shape:
+        return np.dtype((with_attributes(kind.base), kind.shape))
     fields = dict(kind.fields or {})
-    formats = [with_attributes(field) if field.names else field for field, *_ in fields.values()]
+    formats = [with_attributes(field) for field, *_ in fields.values()]
     spec: Any = {
         "names": list(fields),
         "formats": formats,
@@ -54,8 +58,7 @@ if IS_PLAIN:
 
 @cache
 def _kind(kind: Any) -> Any:
-    kind = np.dtype(kind)
-    return with_attributes(kind) if kind.names else kind
+    return with_attributes(np.dtype(kind))
 
 
 def _plain_carray(address: int, shape: tuple[int, ...], kind: Any) -> Any:

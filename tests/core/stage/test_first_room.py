@@ -80,12 +80,15 @@ def test_what_enters_at_the_middle_comes_as_loud_to_both_ears(chamber):
 
 
 def test_the_chamber_is_the_default_and_the_study_stays_nearly_anechoic():
-    named = dict(zip(ADDRESSES, NAMES, strict=True))
-    values = Presets().load("chamber").values
-    assert {named[address]: value for address, value in values.items()} == {
-        name: value for name, value in DEFAULTS.items() if name != "pan"
-    }
-    study = {named[address]: value for address, value in Presets().load("study").values.items()}
+    named = {**dict(zip(ADDRESSES, NAMES, strict=True)), "/body/gain": "gain"}
+
+    def room(name: str) -> dict[str, float]:
+        return {named[address]: value for address, value in Presets().load(name).values.items()}
+
+    usual = {name: value for name, value in DEFAULTS.items() if name != "pan"}
+    assert room("chamber") == {**usual, "gain": 0.0}
+    study = room("study")
+    assert study.pop("gain") == 0.0
     assert study == {
         "size": 5.0, "decay": 0.4, "damping": 0.4, "level": 0.15, "distance": 2.0, "width": 0.3,
     }  # fmt: skip

@@ -53,7 +53,8 @@ def width_cents(sound: np.ndarray, key: int) -> float:
     shifted = sound * np.exp(-2j * np.pi * frequency * np.arange(len(sound)) / RATE)
     window = np.hanning(round(8.0 * RATE / frequency) | 1)
     phase = np.unwrap(np.angle(np.convolve(shifted, window / window.sum(), "valid")))
-    cents = 1200.0 * np.log2(1.0 + np.diff(phase) * RATE / (2.0 * np.pi * frequency))
+    ratio = 1.0 + np.diff(phase) * RATE / (2.0 * np.pi * frequency)
+    cents = 1200.0 * np.log2(np.clip(ratio, 0.9, 1.1))  # beyond it the harmonic was gone a moment
     spectrum = np.fft.rfft((cents - cents.mean()) * np.hanning(len(cents)))
     hertz = np.fft.rfftfreq(len(cents), 1.0 / RATE)
     return float(4.0 * np.abs(spectrum[(hertz > 4.0) & (hertz < 9.0)]).max() / len(cents))

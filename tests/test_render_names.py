@@ -77,3 +77,20 @@ def test_a_preset_of_ones_own_counts_where_it_is_named(rendered, config_home):
     assert told["preset"] == str(own / "flautando.toml")
     assert rendered(*named, "--presets", own)[0] == sound
     assert rendered(*programs, "--presets", own)[0] != before[1]
+
+
+def test_what_is_named_wrongly_is_answered_with_what_there_is(command, tmp_path):
+    score = tmp_path / "tune.text"
+    score.write_text("title=t\n1=F 4/4 4=60\n\n1 2 3 4\n")
+    out = tmp_path / "out.wav"
+    tune = Path(__file__).parents[1] / "examples" / "tunes" / "twinkle.jianpu"
+    for words, said in (
+        (("render", tune, "--room", "church"), "no room 'church' (there are: chamber, courtyard, "),
+        (("render", tune, "--room", "flautando"), "flautando: not a room: it sets /bow/noise"),
+        (("render", score), "it is text; scores in text are named .jianpu, .abc or .musicxml"),
+        (("build", "vst3"), "'vst3' is none of wasm, library, tables, plugin"),
+    ):
+        code, _, err = command(*words, "-o", out)
+        assert (code, said in err) == (2, True), err
+    _, _, err = command("render", tune, "--presets", tmp_path / "none", "--channel", 9, "-o", out)
+    assert "none: no such folder yet; --preset chooses a preset" in err

@@ -138,7 +138,7 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and exit with code 2."""
         if wrong := CHOICE.fullmatch(message):
-            known = re.findall(r"[^\s',]+", wrong[3])
+            known = [*re.findall(r"[^\s',]+", wrong[3]), *self._actions_by_word]
             near = did_you_mean(wrong[2], known)
             message = f"{wrong[1]}: '{wrong[2]}' is none of {', '.join(known)}{near}"
         self.exit(2, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")

@@ -18,7 +18,7 @@ from yehu_server.util import PACKAGE
 # What each command is for; each is a module of this package.
 COMMANDS = {
     "serve": "play live, by MIDI and OSC",
-    "build": "compile the instrument for web pages, or as a library for C programs",
+    "build": "compile the instrument as a plug-in, for web pages or for C programs",
     "devices": "list audio outputs, audio inputs and MIDI inputs",
     "follow": "play the tune that a voice or an instrument has in a sound file",
     "learn": "bind a knob, pedal or OSC address to a parameter of a running server",

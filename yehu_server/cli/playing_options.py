@@ -146,6 +146,8 @@ def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) ->
     from yehu_server.playing.tuning import RangePolicy
 
     user_first = is_live or arguments.presets is not None
+    if arguments.presets and not arguments.presets.is_dir():
+        warn(f"--presets {arguments.presets}: no such folder yet; --preset chooses a preset")
     playing = PlayingOptions(
         mapping=mapping_of(arguments, is_live=is_live),
         presets=Presets(arguments.presets, user_first=user_first),

@@ -126,7 +126,7 @@ def add_arguments(parser: Parser) -> None:
         --capture FILE: write every event to a new file, which yehu-server replay renders
         --overwrite: let --record and --capture replace existing files
         --recordings FOLDER: folder for recordings begun by {PREFIX}/record/start (default:
-            yehu-server in your music folder)
+            "yehu-server" in your music folder)
         --duration SECONDS: end after this time (default: never)
         --log-level: lowest level to log (default: info)
         --verbose: log details; the same as --log-level debug

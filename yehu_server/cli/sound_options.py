@@ -13,6 +13,7 @@ from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.errors import ParameterError
 
 if TYPE_CHECKING:
+    from yehu_server.params.preset_file import Preset
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.preset_folders import Presets
     from yehu_server.rendering.options import Options
@@ -133,12 +134,22 @@ def sound_options_of(arguments: argparse.Namespace, form: str) -> Options:
 
 def room_of(name: str, presets: Presets) -> Values:
     """The values of a preset of rooms; raises YehuError where it is none."""
+    from yehu_server.playing.preset_folders import is_name
+
+    names = presets.names()
+    if is_name(name) and name not in names:
+        rooms = [each for each in names if _is_room(presets.find(each))]
+        raise ParameterError(f"no room {name!r} (there are: {', '.join(rooms)})")
     preset = presets.find(name)
-    other = [each for each in preset.values if not is_of_room(each)]
-    if other or not preset.values:
+    if not _is_room(preset):
+        other = [each for each in preset.values if not is_of_room(each)]
         what = f"it sets {other[0]}" if other else "it sets nothing"
         raise ParameterError(f"{name}: not a room: {what}")
     return tuple(preset.values.items())
+
+
+def _is_room(preset: Preset) -> bool:
+    return bool(preset.values) and all(map(is_of_room, preset.values))
 
 
 def is_of_room(address: str) -> bool:

@@ -115,6 +115,15 @@ def test_after_panic_or_reset_nothing_is_left(still, wire, order, end):
     assert rms(still.pass_time(0.5)) > 1e-4
 
 
+def test_a_release_lifts_a_bow_that_no_note_draws(still):
+    still.send("/pitch", 69)
+    still.send("/bow", 0.2, 0.5)
+    assert rms(still.pass_time(0.5)) > 1e-3
+    still.send("/release")
+    still.pass_time(1.0)
+    assert rms(still.pass_time(0.3)) < 1e-4
+
+
 def test_a_momentary_button_that_is_let_go_ends_nothing(still):
     still.send("/note", 67, 90)
     still.send("/playing/volume", 0.7)

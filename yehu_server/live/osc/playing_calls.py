@@ -128,6 +128,7 @@ class PartCalls(GroupCalls):
     def _release(self, call: Request) -> None:
         if call.is_let_go:
             return
+        self._player.lift(frame=call.frame)  # of a bow that no note draws
         self._player.release(frame=call.frame)
 
     @osc_call(

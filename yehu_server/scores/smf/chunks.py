@@ -117,6 +117,8 @@ def _missing(data: bytes) -> str:
         return "all of its bytes are zero"
     if b"MTrk" in data[: JUNK_BYTES + 4]:
         return "it has a track and no header (MThd)"
+    if min(data[:512]) >= ord("\t"):  # no other control characters
+        return "it is text; scores in text are named .jianpu, .abc or .musicxml"
     return f"there is no header (MThd) in the first {JUNK_BYTES // 1024} kB"
 
 

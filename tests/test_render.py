@@ -232,12 +232,21 @@ def test_where_no_note_would_be_played_nothing_is_written(duet, midi, tmp_path, 
     drums = midi(*notes((0.0, 0.1, 70, 64), channel=10), name="drums.mid")
     for words, reason in [
         ((duet, "--channel", 16), "no note is of channel 16, but of 1, 3, 10"),
+        ((duet, "--ensemble", "--channel", 5), "no note is of channel 5, but of 1, 3, 10"),
         ((drums,), "all its notes are of channel 10, percussion"),
     ]:
         code, _, err = command("render", *words, "-o", tmp_path / "x.wav")
         assert code == 2, words
         assert reason in err
         assert not (tmp_path / "x.wav").exists()
+
+
+def test_a_chosen_channel_without_notes_beside_others_is_named(duet, tmp_path, command):
+    for words in ((), ("--ensemble",)):
+        chosen = ("--channel", 3, "--channel", 5, "--overwrite", "--tail", 0)
+        code, _, err = command("render", duet, *words, *chosen, "-o", tmp_path / "x.wav")
+        assert code == 0
+        assert "no note is of channel 5, but of 1, 3, 10" in err
 
 
 # ---------------------------------------------------------------- settings, mapping, instrument

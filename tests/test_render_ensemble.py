@@ -240,7 +240,7 @@ def test_each_part_is_moved_into_the_range_of_its_own_instrument(tmp_path):
     words = ("render", tune, "-o", tmp_path / "out.wav", "--ensemble", band)
     arguments = _parser().parse_args([*map(str, words)])
 
-    def scores_for(quantities: Quantities | None) -> list[Score]:
+    def scores_for(quantities: Quantities | None, _key_switches: int | None) -> list[Score]:
         is_moved, within = quantities is not None, notes_of(quantities or Quantities())
         return [read_any(tune, ReadOptions(all_parts=True, in_range=is_moved, within=within))]
 
@@ -268,6 +268,24 @@ def test_a_low_fiddle_plays_the_bass_of_a_quartet_where_it_is_written(command, t
     code, _, err = command(*words[:4], "--ensemble", "--overwrite", "--tail", 0.5)
     assert code == 0
     assert "channel 4 three octaves up (a deeper fiddle for channel 4: docs/ensemble.md)" in err
+
+
+def test_keys_are_switches_where_the_mapping_of_a_part_has_them(command, tmp_path):
+    low = notes((0.1, 0.2, 64, 80), (0.3, 0.2, 62, 80), channel=2)
+    score = [*line(1, 74), *notes((0.0, 0.05, 36, 80), channel=2), *low]
+    tune = midi_file(tmp_path / "low.mid", score)
+    (tmp_path / "band.toml").write_text(
+        '[[part]]\nchannel = 1\n[[part]]\nchannel = 2\nmapping = "keyboard-articulations"\n'
+    )
+    sounds = []
+    for words in ((tmp_path / "band.toml",), ("--mapping", "keyboard-articulations")):
+        target = ("-o", tmp_path / "out.wav", "--overwrite", "--dry", "--tail", 0)
+        code, out, err = command("render", tune, *target, "--ensemble", *words)
+        assert code == 0, err
+        assert "channel 2: 2 notes" in out
+        assert err.endswith("low: moved to fit F4 to F6: channel 2 an octave up\n")
+        sounds.append(read(tmp_path / "out.wav"))
+    np.testing.assert_array_equal(*sounds)
 
 
 def test_what_an_ensemble_file_names_must_be_there(refused, trio, tmp_path):

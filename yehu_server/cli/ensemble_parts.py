@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from yehu_server.cli.sound_options import BY_MIDI, Values, is_of_room, room_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import EnsembleError, ParameterError, YehuError
-from yehu_server.scores.score import Score
+from yehu_server.scores.score import Score, concatenate
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.quantities import Quantities
@@ -36,15 +36,15 @@ class Players:
 
 def players_of(
     arguments: argparse.Namespace,
-    scores_for: Callable[[Quantities | None], list[Score]],
+    scores_for: Callable[[Quantities | None, int | None], list[Score]],
     playing: PlayingOptions,
 ) -> Players:
     """Give each part of some scores, which are played one after another, a player.
 
     Raises YehuError where there are too many parts, or what a file names is not there.
 
-    `scores_for`: reads the scores, with their parts moved into the range of an instrument; with
-        None as they are written.
+    `scores_for`: reads the scores, with their parts moved into the range of an instrument, or with
+        None as they are written; and with the key switches of a mapping.
     `playing`: of all players, where an ensemble file does not say otherwise.
     """
     from yehu_server.playing.parts import seated
@@ -52,13 +52,15 @@ def players_of(
     from yehu_server.rendering.options import Part
     from yehu_server.scores.reading import part_name, part_of, percussion_notes
 
-    scores = scores_for(playing.quantities)
+    scores = scores_for(playing.quantities, playing.mapping.key_switches)
     room: Values = ()
     ensemble = None
     files: list[Path] = []
     parts: list[Part] = []
     spare = 0
     if arguments.ensemble == BY_MIDI:
+        if arguments.channel is not None:
+            Part(concatenate(scores), playing).check_is_heard()
         entries = _entries(arguments, scores)
         is_counted = arguments.channel is None and arguments.by == "channel"
         spare = percussion_notes(scores) if is_counted else 0
@@ -83,12 +85,13 @@ def players_of(
         with _at(entry.where):
             if entry.instrument is not None:
                 own = own.on_instrument(entry.instrument, arguments.practice)
-            read = scores_for(own.quantities)
+            read = scores_for(own.quantities, own.mapping.key_switches)
         files += own.files
         what = f"track {entry.track}" if entry.channel is None else f"channel {entry.channel + 1}"
         played = [part_of(score, entry.channel, entry.track) for score in read]
-        if any(each.instrument is not None for each in entries):
-            written = [part_of(score, entry.channel, entry.track) for score in scores_for(None)]
+        if any(each.instrument is not None or each.mapping is not None for each in entries):
+            as_written = scores_for(None, own.mapping.key_switches)
+            written = [part_of(score, entry.channel, entry.track) for score in as_written]
             name = entry.name or part_name(read, entry.channel, entry.track)
             within = notes_of(own.quantities)
             played = [
@@ -102,7 +105,7 @@ def players_of(
 
 
 def _with_own_moves(score: Score, written: Score, name: str, within: NoteRange) -> Score:
-    """A part whose remark on moves is of itself alone, since other parts have other instruments."""
+    """A part whose remark on moves is of itself alone, where others have other instruments."""
     from yehu_server.scores.octaves import NoteSpan, octaves_of
     from yehu_server.scores.score import REST_S, notes_of
     from yehu_server.scores.written.in_range import MOVED, line_of

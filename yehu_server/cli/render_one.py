@@ -65,8 +65,9 @@ def rendered(
     _warn_of_own(arguments, playing)
     options = sound_options_of(arguments, form)
     scores = cache(partial(_scores, arguments, playing))
+    own = playing.quantities, playing.mapping.key_switches
     if arguments.ensemble is None:
-        part = Part.shaped(scores(playing.quantities), playing)
+        part = Part.shaped(scores(*own), playing)
         part.check_is_heard()
         players = Players((part,))
     else:
@@ -74,10 +75,7 @@ def rendered(
     read = [*arguments.midi, *playing.files, *players.files]
     stems = _stems(arguments, options, players)
     check_distinct({**outputs, **{f"stem {stem.name}": stem for stem in stems}}, read)
-    played = [part.score for part in players.parts]
-    remarks = [] if arguments.quiet else [line for score in played for line in score.remarks]
-    for line in dict.fromkeys([*remarks, *played[0].warnings]):
-        warn(line)
+    _warn_of_scores(arguments, players, scores(*own))
     compile_all(arguments)
     parts = players.parts
     with progress_bar(arguments, "calibrating", "notes") as progress:
@@ -156,9 +154,14 @@ def _counts(summary: Summary | PartSummary) -> dict[str, Any]:
 
 
 def _scores(
-    arguments: argparse.Namespace, playing: PlayingOptions, quantities: Quantities | None
+    arguments: argparse.Namespace,
+    playing: PlayingOptions,
+    quantities: Quantities | None,
+    key_switches: int | None,
 ) -> list[Score]:
     """Read all files, moved to fit an instrument of some quantities, or with None as written.
+
+    `key_switches`: of the mapping.
 
     Raises DamagedError where --strict refuses one; ScoreError where one cannot be read, or they
     last too long together.
@@ -169,6 +172,7 @@ def _scores(
     whole = arguments.ensemble is not None or arguments.channel is not None
     own = replace(playing, quantities=quantities or playing.quantities)
     how = ReadOptions.by(own, arguments.part, all_parts=whole)
+    how = replace(how, key_switches=key_switches)
     if quantities is None:
         how = replace(how, in_range=False)
     read = partial(read_any, song=arguments.song, strict=arguments.strict, max_duration_h=longest)
@@ -177,6 +181,24 @@ def _scores(
         scores.append(read(path, how))
         check_duration(sum(each.duration_s for each in scores), longest, "all scores last")
     return scores
+
+
+def _warn_of_scores(
+    arguments: argparse.Namespace, players: Players, scores: Sequence[Score]
+) -> None:
+    """Warn of what is wrong in the scores; unless quiet, also of what a player should know."""
+    from yehu_server.rendering.options import unheard_line
+    from yehu_server.scores.reading import channels_with_notes
+
+    played = [part.score for part in players.parts]
+    lines = [*played[0].warnings]
+    if not arguments.quiet:
+        remarks = [line for score in played for line in score.remarks]
+        unheard = unheard_line(arguments.channel or (), channels_with_notes(scores))
+        is_mpe = players.parts[0].playing.mapping.mpe  # whose members may be without notes
+        lines = [*remarks, *([] if is_mpe else filter(None, [unheard])), *lines]
+    for line in dict.fromkeys(lines):
+        warn(line)
 
 
 def _warn_of_own(arguments: argparse.Namespace, playing: PlayingOptions) -> None:

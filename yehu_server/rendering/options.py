@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
@@ -46,8 +46,16 @@ class Part:
                 f"{self.score.name}: all its notes are of channel 10, percussion, which is played "
                 "only if it is chosen"
             )
-        asked, has = (", ".join(str(each + 1) for each in of) for of in (sorted(chosen), found))
-        raise ScoreError(f"{self.score.name}: no note is of channel {asked}, but of {has}")
+        raise ScoreError(f"{self.score.name}: {unheard_line(chosen, found)}")
+
+
+def unheard_line(chosen: Collection[int], found: Sequence[int]) -> str:
+    """A line that names chosen channels, counted from 0, that are not among those with notes."""
+    asked, has = (
+        ", ".join(str(each + 1) for each in of)
+        for of in (sorted({*chosen}.difference(found)), found)
+    )
+    return f"no note is of channel {asked}, but of {has}" if asked and has else ""
 
 
 @dataclass(frozen=True)

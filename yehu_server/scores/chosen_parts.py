@@ -20,6 +20,7 @@ from yehu_server.scores.score import (
     notes_of,
     transposed,
 )
+from yehu_server.scores.slides import ARTICULATION
 from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
@@ -94,16 +95,24 @@ def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
 
 
 def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
-    """A score with the notes of some of its parts alone."""
+    """A score with the notes of some of its parts alone, and the key switches that they have.
+
+    Switches in a track without notes are for all that play on their channel.
+    """
     find = finder_of(kept)
-    events = (
-        event
-        for event in score.events
-        if event.message.type != "note_on"
-        or event.message.velocity == 0
-        or find(event.message.channel, event.track) is not None
-    )
-    return replace(score, events=tuple(events), parts=tuple(kept))
+    places = {(note.channel, score.events[note.begins].track) for note in notes_of(score)}
+    sounding = {track for _, track in places}
+    channels = {channel for channel, track in places if find(channel, track) is not None}
+
+    def is_kept(event: ScoreEvent) -> bool:
+        message = event.message
+        if message.type == "setting" and message.address == ARTICULATION:
+            is_own = event.track not in sounding or find(message.channel, event.track) is not None
+            return is_own and message.channel in channels
+        is_note = message.type == "note_on" and message.velocity > 0
+        return not is_note or find(message.channel, event.track) is not None
+
+    return replace(score, events=tuple(filter(is_kept, score.events)), parts=tuple(kept))
 
 
 def midi_in_range(

@@ -17,6 +17,7 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.stringing import notes_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
+from yehu_server.scores.key_switches import with_key_switches
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import (
     MAX_DURATION_H,
@@ -122,6 +123,7 @@ class ReadOptions:
     is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
     within: NoteRange = YEHU  # the notes of the instrument
     channels: Collection[int] | None = None  # of a MIDI file that are played: all but percussion
+    key_switches: int | None = None  # of a MIDI file: see `Mapping`
 
     @classmethod
     def by(
@@ -135,6 +137,7 @@ class ReadOptions:
             is_mpe=playing.mapping.mpe,
             within=notes_of(playing.quantities),
             channels=playing.channels,
+            key_switches=playing.mapping.key_switches,
         )
 
 
@@ -213,6 +216,9 @@ def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
 
 def _midi_played(score: Score, options: ReadOptions) -> Score:
     is_mpe = options.is_mpe or says_mpe(score)
+    played = chosen_parts.MELODIC if options.channels is None else options.channels
+    played = range(16) if is_mpe else {*chosen_parts.MELODIC, *played}
+    score = with_key_switches(score, options.key_switches, played)
     tune = score if is_mpe else chosen_parts.default_midi_part(score)
     delays = midi_delays(score, tune)
     if options.parts:

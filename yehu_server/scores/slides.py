@@ -181,6 +181,12 @@ def _states(score: Score, playing: PlayingOptions, amount: float) -> dict[int, _
             value = defaults[message.address] if message.value is None else message.value
             own = _State({**values, message.address: value}, bends + (message.address == BEND))
             by_channel[message.channel] = own
+        elif message.type == "control_change":
+            for bind in playing.mapping.of(f"cc {message.control}"):
+                if bind.target == ARTICULATION:
+                    values, bends = by_channel[message.channel]
+                    chosen = {ARTICULATION: bind.from_unit(message.value / 127.0)}
+                    by_channel[message.channel] = _State({**values, **chosen}, bends)
         elif message.type == "note_on":
             found[number] = by_channel[message.channel]
     return found

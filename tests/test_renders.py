@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from as_processor import PROCESSORS, environment, missing
+from as_processor import PROCESSORS, V2, environment, missing
 from renders import NAMES, SUMS
 
 from yehu_server.compile import levels
@@ -45,7 +45,11 @@ def test_commands_give_the_samples_of_this_level(known, half):
     assert [name for name in names if found[name] != known[name]] == []
 
 
-@pytest.mark.parametrize("processor", PROCESSORS)
+# Without --all, the one that differs most from what is new.
+@pytest.mark.parametrize(
+    "processor",
+    [V2, *(pytest.param(each, marks=pytest.mark.slow) for each in PROCESSORS if each != V2)],
+)
 def test_the_processor_that_libraries_see_does_not_matter(known, processor):
     if lacking := missing(processor):
         pytest.skip(f"its code does not run here, for lack of {', '.join(lacking)}")

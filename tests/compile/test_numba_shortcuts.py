@@ -82,6 +82,7 @@ def names(folder: Path) -> dict[str, list[str]]:
     return found
 
 
+@pytest.mark.slow
 def test_what_is_kept_names_what_it_links_alike_in_whatever_order_it_is_compiled(tmp_path):
     kept = []
     for step in ("1", "-1"):

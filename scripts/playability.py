@@ -17,7 +17,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from measures.bends import bends
-from measures.hunting import hunting
 from measures.in_tune import chromatic, grid, isolated, presets, quarters, steady, strings
 from measures.life import life
 from measures.loudness import evenness, velocity
@@ -39,7 +38,7 @@ MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
     for each in (
         *(grid, isolated, chromatic, steady, quarters, legato, bends, tunes, detached),
-        *(hunting, life, clicks, onsets, evenness, velocity, shuffled, strings, presets, phrases),
+        *(life, clicks, onsets, evenness, velocity, shuffled, strings, presets, phrases),
         vibrato,
     )
 }

@@ -10,7 +10,7 @@ import mido
 import numpy as np
 import pytest
 from hands import RATE, ideal
-from measures.together import Together
+from together import Together
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import RIG_BYTES

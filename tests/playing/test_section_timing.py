@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from measures.together import Together
+from together import Together
 
 from yehu_server.core.midi.section_players import ERROR_MS, GAIN_HI, GAIN_LO
 
-SCRIPTS = Path(__file__).parents[2] / "scripts"
 RATE = 48000.0
 HALF_A_SECOND = 24000
 USUAL = 0.25  # of /playing/variation
 
 
-@pytest.fixture
-def measures(monkeypatch):
-    """The measures of scripts/section.py."""
-    monkeypatch.syspath_prepend(SCRIPTS)
-    from measures import section_time
+def fit(onsets):
+    """Fit the law of ``midi.section_players``, each counted from a moment that a note's share.
 
-    return section_time
+    `onsets` [shape=(notes, players)]. Return the gains, and the standard deviation of the errors.
+    """
+    apart = onsets - onsets.mean(axis=1, keepdims=True)
+    now, change = apart[:-1], np.diff(apart, axis=0)
+    notes, players = now.shape
+    corrected = -players * now[:, :, np.newaxis] * np.eye(players)  # [note, player, gain]
+    corrected -= corrected.mean(axis=1, keepdims=True)
+    terms = corrected.reshape(-1, players)
+    gains, *_ = np.linalg.lstsq(terms, change.ravel(), rcond=None)
+    left = change.ravel() - terms @ gains
+    return gains, float(np.sqrt(np.sum(left**2) / (notes * (players - 1))))
 
 
 def onsets(timing: Together, notes: int, step: int = HALF_A_SECOND):
@@ -31,9 +35,9 @@ def onsets(timing: Together, notes: int, step: int = HALF_A_SECOND):
 
 
 @pytest.mark.parametrize("people", [2, 4, 8])
-def test_gains_and_errors_are_found_again_by_regression(measures, people):
+def test_gains_and_errors_are_found_again_by_regression(people):
     timing = Together(people, RATE, seed=3)
-    gains, error = measures.fit(onsets(timing, 3000))
+    gains, error = fit(onsets(timing, 3000))
     assert np.mean(gains) == pytest.approx(np.mean(timing.gains), abs=0.02)
     if people > 2:  # of two, only the sum of the gains shows
         assert gains == pytest.approx(timing.gains, abs=0.03)
@@ -81,12 +85,12 @@ def test_players_do_not_drift_apart_in_ten_minutes():
     assert means.max() < 25.0
 
 
-def test_who_rests_is_not_waited_for(measures):
+def test_who_rests_is_not_waited_for():
     timing = Together(8, RATE, seed=4)
     onsets(timing, 10)
     timing.playing = 4
     late = onsets(timing, 3000)
     assert not late[:, 4:].any()
-    gains, _ = measures.fit(late[1:, :4])
+    gains, _ = fit(late[1:, :4])
     assert gains.mean() == pytest.approx(np.mean(timing.gains), abs=0.03)
     assert len(timing.gains) == 4

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics import kernel, layout, refined, time_loop
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 SETTLED_S = 0.5
 VIBRATO_HZ, VIBRATO_M = 6.0, 1e-3

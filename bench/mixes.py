@@ -22,7 +22,7 @@ from yehu_server.core.engine.mailbox import MIDI_INPUTS, PAGES, SERVER
 from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
 from yehu_server.core.player.commands import BEGIN, DRAW, END, KINDS, SLIDE, WRITE
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.audio.output import shared_memory
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
 from yehu_server.live.midi.routes import Router
@@ -31,9 +31,9 @@ from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Framing, Peer
 from yehu_server.live.page.guests import OWN, PLAY
+from yehu_server.live.page.page_sockets import AT_ONCE, NOW, SETTINGS
 from yehu_server.live.page.players import LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
-from yehu_server.live.page.sockets import AT_ONCE, NOW, SETTINGS
 from yehu_server.params.table import TABLE
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
@@ -63,7 +63,7 @@ class Page:
         self._bucket = TokenBucket(limits.PAGE_EVENTS_A_SECOND, at_once)
 
     def play(self, players: PagePlayers, frame: int) -> None:
-        """Post what a page may at a frame, as ``live.page.sockets`` does."""
+        """Post what a page may at a frame, as ``live.page.page_sockets`` does."""
         while self._bucket.left(frame / RATE) >= 0.0:
             if not len(self._waiting):
                 at = NOW if self._ahead_s is None else frame + round(RATE * self._ahead_s)

@@ -20,7 +20,7 @@ from kernel_loop import BOW_X, FINGER_X, PRESS, SETTLED_S, SPEED
 from numpy.typing import NDArray
 
 from yehu_server.compile import levels
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 SOURCE = Path(__file__).with_name("yardstick.cpp")
 # For the level that our own code is compiled for, by GCC's name.

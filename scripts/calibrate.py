@@ -12,7 +12,7 @@ import json
 import time
 from dataclasses import asdict
 
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.playing.calibration import calibrate, calibration_key
 from yehu_server.playing.calibration_store import SHIPPED
 

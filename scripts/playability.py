@@ -29,7 +29,7 @@ from measures.transitions import clicks, legato
 from measures.tunes import detached, tunes
 from measures.vibrato import vibrato
 
-from yehu_server.core.physics.quantities import Quantities, read_quantities
+from yehu_server.core.physics.default_quantities import Quantities, read_quantities
 from yehu_server.errors import YehuError
 from yehu_server.params.table import find
 from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_table

@@ -17,7 +17,7 @@ import time
 from yehu_lab.practising.bowing_search import BowingSearch
 from yehu_lab.practising.candidates import DEFAULT
 from yehu_lab.practising.practice_file import as_data, as_text
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.bowing import BOW_POSITIONS, default_bowing_table
 from yehu_server.playing.bowing_tables import SHIPPED, shipped_bowing_table
 from yehu_server.playing.calibration import calibrate

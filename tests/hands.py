@@ -10,7 +10,7 @@ import numpy as np
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.interpret_events import interpret
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.commands import apply
 from yehu_server.core.player.note_tables import OPEN_NOTES, PITCHES, SPEEDS, NoteTables
 from yehu_server.core.player.notes import sounding_pitch

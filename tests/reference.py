@@ -140,13 +140,11 @@ class RefOutputs:
     f_f: Array  # (F, 2)
     bowed: int  # 0, 1, or -1 when the bow is lifted
     zbar: float  # mu_t0 z of the bowed string
-    friction_residual: float  # m/s, r - (2/k)(zbar - z)
     f_ext: Array  # (F,)
     eta: Array  # (F, 2), eta^n
     eta_star: Array  # (F, 2)
     g: Array  # (F, 2)
     theta: Array  # (F, 2)
-    scalar_s: float  # v_r = scalar_s - scalar_I f_b (v_b is in scalar_s)
     scalar_I: float
 
 
@@ -562,13 +560,12 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
     g = theta * g_hat
 
     # -- The step itself -----------------------------------------------------------------------
-    X_next, f, f_b, v_r, s, mobility = solve(g)
+    X_next, f, f_b, v_r, _, mobility = solve(g)
     eta_next = (W[2:first_tau] @ X_next).reshape(F, 2)
     Psi_next = Psi + g * (eta_next - eta_prev) / 2.0  # (33)
-    z_next, zbar, residual = z.copy(), 0.0, 0.0
+    z_next, zbar = z.copy(), 0.0
     if bowed >= 0:
         zbar = float(friction.zbar_of(np.array(f_b), np.array(v_r)))
-        residual = float(friction.residual(np.array(f_b), s, mobility))
         z_next[bowed] = 2.0 * zbar - z[bowed]  # section 3.5
 
     after = RefState(
@@ -590,13 +587,11 @@ def step(params: RefParams, state: RefState, controls: RefControls) -> tuple[Ref
         f_f=f[2:first_tau].reshape(F, 2).copy(),
         bowed=bowed,
         zbar=zbar,
-        friction_residual=residual,
         f_ext=f_ext,
         eta=eta_now,
         eta_star=eta_star,
         g=g,
         theta=theta,
-        scalar_s=s,
         scalar_I=mobility,
     )
     return after, outputs
@@ -617,16 +612,6 @@ def v_r_on_grid(
     I_b = interpolate_linear(params.strings[i], controls.x_b)
     moved = I_b @ (after.u[i] - before.u_prev[i])[1:-1] + after.zeta[i] - before.zeta_prev[i]
     return float(moved / (2.0 * params.k) - controls.v_b)
-
-
-def constraint_residual(params: RefParams, state: RefState) -> Array:
-    """(2,): I_c u_i - sum q, in metres, (44)."""
-    return np.array(
-        [
-            interpolate_cubic(string, params.x_c) @ state.u[i][1:-1] - np.sum(state.q)
-            for i, string in enumerate(params.strings)
-        ]
-    )
 
 
 # ---------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from yehu_lab.body.tap import Channel, read_recording
 from yehu_lab.sweeps.result import Result
 from yehu_server.cli import _parser
 from yehu_server.cli.config import read_config
-from yehu_server.core.physics.quantities import read_body, read_quantities
+from yehu_server.core.physics.default_quantities import read_body, read_quantities
 from yehu_server.errors import YehuError
 from yehu_server.following.recording import downmix_of, recording_of_file
 from yehu_server.playing.mapping import load

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from yehu_server.core.physics.quantities import read_quantities
+from yehu_server.core.physics.default_quantities import read_quantities
 from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_table
 
 SCRIPTS = Path(__file__).parents[1] / "scripts"

@@ -16,7 +16,7 @@ from pitch import cents, hertz, pitch_of
 
 from yehu_server.cli import _parser
 from yehu_server.cli.ensemble_parts import players_of
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.stringing import notes_of
 from yehu_server.rendering import cores

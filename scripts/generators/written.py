@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from io import BytesIO
 from pathlib import Path
-
-from tunes.examples import EXAMPLES
 
 from generators.model_records import records
 from generators.page_tables import ROOT
 from generators.pages import page
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.live.network import OSC_ADDRESS
 from yehu_server.live.page.examples import examples
 from yehu_server.live.page.facts import facts, module
@@ -44,10 +41,6 @@ def written() -> Iterator[tuple[Path, bytes]]:
         path = ROOT / "mappings" / surface.name
         is_fresh = is_up_to_date(surface, path.parent)  # an archive may differ by its packer alone
         yield path, path.read_bytes() if is_fresh else surface.make(OSC_ADDRESS)
-    for name, make in EXAMPLES.items():
-        score = BytesIO()
-        make().save(file=score)
-        yield ROOT / "examples" / f"{name}.mid", score.getvalue()
     yield CALIBRATIONS, calibrations().encode()
     yield NUMBERS, numbers().encode()
 

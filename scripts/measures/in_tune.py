@@ -30,7 +30,7 @@ from measures.loudness import centroid_hz
 from measures.shares import Share, share
 from measures.take import Setup, Take, held, in_parallel
 from yehu_server.cli.sound_options import is_of_room
-from yehu_server.core.physics.quantities import Quantities, measured_body
+from yehu_server.core.physics.default_quantities import Quantities, measured_body
 from yehu_server.core.player.note_tables import OPEN_NOTES
 from yehu_server.params.table import STRING_NAMES
 from yehu_server.playing.pitch_and_level import a_weighted_db

@@ -14,7 +14,7 @@ import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.note_tables import NoteTables, wave_speed
 from yehu_server.params.table import FINGERS, find
 from yehu_server.playing.calibration_store import calibration_for

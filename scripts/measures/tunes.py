@@ -6,7 +6,7 @@ detached ones are lifted after a share of their time.
 The second half of a sixteenth is 62 ms at 120 quarters a minute, and 43 ms at 172. There what rings
 of the notes before is part of the sound, so the pitch is that of the harmonics (`intonation`). On
 sawtooth waves of 65 to 89 at 44.1, 48 and 96 kHz, with noise 40 dB below, its error is 0.4 cents at
-most; beside a fifth above, 6 dB below the note, 1.5 cents (tests/test_measures.py).
+most; beside a fifth above, 6 dB below the note, 1.5 cents.
 """
 
 from __future__ import annotations
@@ -15,8 +15,6 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from tunes.shi_bei_jiu import make_notes
-
 from measures.intonation import judged, overtones_off_by
 from measures.shares import Share
 from measures.take import Setup, Take, in_parallel
@@ -24,7 +22,7 @@ from measures.take import Setup, Take, in_parallel
 SIXTEENTHS_S = (0.125, 0.087)
 DETACHED_S, HELD = (0.125, 0.087, 0.0625), (1.0, 0.6)  # sixteenths; share of each that is held
 OVERLAP_S = 0.01
-FILE = Path(__file__).parents[1] / "tunes" / "fast.toml"
+FILE = Path(__file__).with_name("fast.toml")
 
 
 @dataclass(frozen=True)
@@ -50,10 +48,8 @@ def read(sixteenths: str) -> list[Note]:
 
 def all_tunes() -> dict[str, list[Note]]:
     """Return the notes of each tune."""
-    example = [Note(note.pitch, note.slot, note.slots) for note in make_notes()]
     with FILE.open("rb") as file:
-        own = {name: read(data["sixteenths"]) for name, data in tomllib.load(file).items()}
-    return {"Shi Bei Jiu": example, **own}
+        return {name: read(data["sixteenths"]) for name, data in tomllib.load(file).items()}
 
 
 def _errors(

@@ -16,7 +16,7 @@ from pictures.saving import ROOT, save
 from yehu_lab.body import made_taps
 from yehu_lab.body.tap import write_taps
 from yehu_server.cli import main as run
-from yehu_server.core.physics.quantities import Body, measured_body
+from yehu_server.core.physics.default_quantities import Body, measured_body
 
 TUNE = ROOT / "examples" / "slow_air.mid"
 LARGER = 1.18  # the other body's size: all its resonances lie lower by this

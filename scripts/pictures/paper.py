@@ -17,7 +17,7 @@ import yehu_server as yehu
 from pictures.saving import ROOT, save
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.bridge import advance_bridge
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 
 NOTEBOOK = ROOT / "examples" / "notebooks" / "2_figures_of_the_paper.ipynb"
 DRAWN = ("2_admittance", "3_bowed", "4_strings", "5_gestures", "6_energy")  # in its order

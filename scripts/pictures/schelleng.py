@@ -21,7 +21,7 @@ from yehu_lab.sweeps.result import Result
 from yehu_lab.sweeps.running import sweep
 from yehu_lab.sweeps.study import study_of
 from yehu_server.core.controls.kernel_controls import EXTRA_SHARE, EXTRA_SHARE_SPEED
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.schelleng import upper_limit
 from yehu_server.core.player.bowing import (
     AT_FIRM,

@@ -12,7 +12,7 @@ from yehu_lab.regimes.columns import HELMHOLTZ, REGIMES
 from yehu_lab.sweeps.result import Result
 from yehu_lab.sweeps.running import sweep
 from yehu_lab.sweeps.study import study_of
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 RATES = (44100.0, 88200.0, 176400.0, 352800.0)
 HEADROOMS = (1.0, 1.1, 1.15)  # other numbers of nodes, and the same physics

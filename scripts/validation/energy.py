@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics import kernel, layout, time_loop
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 SECONDS = 10.0
 SEEDS, AT_OTHER_RATES = 24, 3

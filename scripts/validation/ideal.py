@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics.quantities import (
+from yehu_server.core.physics.default_quantities import (
     BowQuantities,
     Quantities,
     StringQuantities,

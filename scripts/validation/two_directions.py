@@ -10,7 +10,7 @@ import numpy as np
 from yehu_lab.regimes.columns import HELMHOLTZ
 from yehu_lab.sweeps.running import sweep
 from yehu_lab.sweeps.study import study_of
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.scores.gesture import gesture_from
 from yehu_server.simulation.run import simulate
 

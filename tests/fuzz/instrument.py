@@ -10,7 +10,7 @@ from interpreted import ALL_KINDS, Leader, Requested
 
 from yehu_server.core.controls.record import prepare_controls
 from yehu_server.core.controls.slots import LOWER_BOUNDS, UPPER_BOUNDS
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.commands import KINDS, apply
 from yehu_server.core.player.notes import sounding_pitch
 from yehu_server.core.player.record import prepare_player

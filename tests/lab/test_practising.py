@@ -20,7 +20,7 @@ from yehu_lab.practising.bowing_search import (
 from yehu_lab.practising.candidates import slower
 from yehu_lab.practising.passages import Passage, SearchedNote
 from yehu_lab.practising.practice_file import write_bowing_table
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.bowing import (
     AT_FIRM,
     AT_FLAUTANDO,

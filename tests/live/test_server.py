@@ -10,7 +10,7 @@ from wire import f32
 
 from yehu_server.errors import DeviceError
 from yehu_server.live.network import Allowed
-from yehu_server.live.osc.open_sockets import open_both
+from yehu_server.live.osc.listening_sockets import open_both
 
 HOST = "127.0.0.1"
 

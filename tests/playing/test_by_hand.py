@@ -8,7 +8,7 @@ from hands import HIGH_DB, LOW_DB, Checked, Watched, ideal
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.part_state import Key

@@ -13,7 +13,7 @@ from pitch import cents, hertz, pitch_of
 from sound import run, run_for
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.intonation import balance_db, position_of
 from yehu_server.core.player.note_tables import (
     OPEN_NOTES,

@@ -7,7 +7,7 @@ import math
 import pytest
 from hands import Checked, Move, Watched, ideal
 
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.velocity import NEUTRAL_VELOCITY
 from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.calibration_store import calibration_for

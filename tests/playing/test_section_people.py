@@ -11,7 +11,7 @@ from hands import ideal
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.midi.section_players import DISTANCE, GAIN, PAN, own_value
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.radiation import response
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.playing.options import PlayingOptions

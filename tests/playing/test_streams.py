@@ -11,7 +11,7 @@ from hands import Checked, Watched
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import load
 from yehu_server.playing.part_state import Key

@@ -11,7 +11,7 @@ from pitch import cents, hertz, pitch_of
 import yehu_server as yehu
 from yehu_lab.practising.passages import SearchedNote, pitches_near_notes, stops_of
 from yehu_server import YehuError
-from yehu_server.core.physics.quantities import Quantities, override, read_quantities
+from yehu_server.core.physics.default_quantities import Quantities, override, read_quantities
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.note_tables import PITCHES
 from yehu_server.errors import ParameterError

@@ -15,7 +15,7 @@ pytestmark = [
     pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
 ]
 PREV, NEXT = (40, 296), (150, 296)  # places in the chooser of presets
-WOOD, PAPER = (0xE2, 0xBF, 0x8D), (0xF7, 0xF3, 0xEA)
+WOOD = 0xE2, 0xBF, 0x8D
 TAB, RIGHT, END = 23, 114, 115  # codes of keys
 TRIES = 100
 

@@ -13,7 +13,7 @@ import mido
 import pytest
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.abc import vocabulary
+from yehu_server.scores.abc import keywords
 from yehu_server.scores.abc.reader import read_abc
 
 ABC2MIDI = shutil.which("abc2midi")
@@ -297,12 +297,12 @@ def test_fields_and_directives_are_played_silent_or_told(read):
 
 def test_the_documentation_lists_fields_properties_and_directives():
     page = (Path(__file__).parents[2] / "docs/scores.md").read_text(encoding="utf-8")
-    for kind in (vocabulary.PLAYED, vocabulary.SILENT, vocabulary.LEFT_OUT):
-        for table, sign in ((vocabulary.FIELDS, ":"), (vocabulary.PROPERTIES, "=")):
+    for kind in (keywords.PLAYED, keywords.SILENT, keywords.LEFT_OUT):
+        for table, sign in ((keywords.FIELDS, ":"), (keywords.PROPERTIES, "=")):
             names = " ".join(f"`{name}{sign}`" for name, its in table.items() if its == kind)
             assert f"| {names} |" in page or not names, kind
     shown = " ".join(page.split())
-    silent = [name for name, kind in vocabulary.DIRECTIVES.items() if kind == vocabulary.SILENT]
+    silent = [name for name, kind in keywords.DIRECTIVES.items() if kind == keywords.SILENT]
     of_midi = [name for name in silent if name.startswith("midi ")]
     assert f"```text {' '.join(name for name in silent if name not in of_midi)} ```" in shown
     assert f"```text {' '.join(name.removeprefix('midi ') for name in of_midi)} ```" in shown

@@ -17,7 +17,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.player.bowing import default_bowing_table
 from yehu_server.core.player.commands import (
     BEGIN,

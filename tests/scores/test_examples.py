@@ -1,7 +1,4 @@
-"""The scores in examples/: made again byte for byte, for a yehu, and as their makers say.
-
-What `scripts/tunes/examples.py` says of each score is tested.
-"""
+"""The scores in examples/ can be played by a yehu, and show what they are for."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ from musicxml_text import (
 
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import NUMBER
-from yehu_server.scores.musicxml import reader, vocabulary
+from yehu_server.scores.musicxml import elements, reader
 from yehu_server.scores.musicxml.reader import DEEPEST, MAX_XML_BYTES, read_musicxml
 from yehu_server.scores.written.notated import MARKS, SPANS
 from yehu_server.scores.written.words import meaning_of
@@ -132,7 +132,7 @@ def test_what_is_not_understood_is_counted_and_named(read):
 
 
 def test_each_element_is_played_silent_or_told_and_the_documentation_says_which(read):
-    kinds = (vocabulary.PLAYED, vocabulary.TOLD, vocabulary.SILENT)
+    kinds = (elements.PLAYED, elements.TOLD, elements.SILENT)
     assert len(frozenset().union(*kinds)) == sum(map(len, kinds)) == 442  # of the schema
     page = " ".join(EXAMPLE.parents[1].joinpath("docs/scores.md").read_text("utf-8").split())
     for kind in kinds:

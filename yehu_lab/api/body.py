@@ -14,8 +14,8 @@ from yehu_lab.body.body_file import Fit, bare_fit, read_fit
 from yehu_lab.body.fitting_process import fit_in_process
 from yehu_lab.body.measurement import Measurement, average, read
 from yehu_server.api.checks import PathLike, number, path_of, whole
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, USUAL_SECTIONS
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Body(Fit):
 
     Attributes
     ----------
-    body : core.physics.quantities.Body
+    body : core.physics.default_quantities.Body
         What the model plays: ``Quantities(body=found.body)``.
     modes : Modes
         The bridge modes: arrays ``frequency_hz``, ``damping``, ``mass`` (kg), ``resistance``.

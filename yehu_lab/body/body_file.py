@@ -1,7 +1,7 @@
 """A fitted body with its measurement, and body files: write one, and read it again.
 
-A body file is JSON: what `physics.quantities.read_body` reads, and beside it what was measured
-and how the fit went, which `yehu-server body show` draws.
+A body file is JSON: what `physics.default_quantities.read_body` reads, and beside it what was
+measured and how the fit went, which `yehu-server body show` draws.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from yehu_lab.body.curve import Complexes, Curve, Floats
 from yehu_lab.body.measurement import Measurement
 from yehu_lab.body.modes import Modes
-from yehu_server.core.physics.quantities import Body, measured_body, read_body
+from yehu_server.core.physics.default_quantities import Body, measured_body, read_body
 from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError, OutputError
 from yehu_server.util import __version__

@@ -13,8 +13,8 @@ from yehu_lab.body.measurement import HIGHEST_HZ, LOWEST_HZ, Measurement
 from yehu_lab.body.modes import Modes, Problem
 from yehu_lab.body.search import Search
 from yehu_lab.body.sections import fit_sections
+from yehu_server.core.physics.default_quantities import check_body, measured_body
 from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, USUAL_SECTIONS
-from yehu_server.core.physics.quantities import check_body, measured_body
 from yehu_server.errors import MeasurementError
 
 RATE = 44100.0  # of the radiation's sections; at others the model moves them

@@ -12,7 +12,7 @@ import numpy as np
 
 from yehu_lab.body.curve import Floats
 from yehu_lab.body.tap import Tap
-from yehu_server.core.physics.quantities import Body, measured_body
+from yehu_server.core.physics.default_quantities import Body, measured_body
 from yehu_server.util.hints import require_package
 
 OVER = 8  # samples computed for one that is kept

@@ -134,7 +134,7 @@ def _fit(arguments: argparse.Namespace) -> int:
 def _show(arguments: argparse.Namespace) -> int:
     from yehu_lab.body.body_file import read_fit
     from yehu_lab.plot.body import write_picture
-    from yehu_server.core.physics.quantities import BODY_FILE
+    from yehu_server.core.physics.default_quantities import BODY_FILE
     from yehu_server.plot.png import check_picture
 
     path = arguments.body or BODY_FILE

@@ -17,7 +17,7 @@ from yehu_lab.dataset.draws import (
     shares_of,
 )
 from yehu_lab.sweeps.note_strokes import played_rate
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.player.note_range import YEHU
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.params.table import find

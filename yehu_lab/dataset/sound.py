@@ -12,7 +12,7 @@ import numpy as np
 from yehu_lab.dataset.description import Description
 from yehu_lab.regimes.columns import REGIMES, UNBOWED
 from yehu_lab.regimes.judge import MIN_PERIODS, PERIODS, judge
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.tuning import STANDARD_A4

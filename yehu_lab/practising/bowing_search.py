@@ -29,7 +29,7 @@ from yehu_lab.practising.passages import (
 )
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.bowing import (
     BOW_POSITIONS,
     FIRST_NOTE,

@@ -19,6 +19,7 @@ from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import PARK_AFTER_S
 from yehu_server.core.engine.atomics import at
 from yehu_server.core.physics import kernel, planes
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.layout import (
     F_N,
     FINGER_CONTROLS,
@@ -32,7 +33,6 @@ from yehu_server.core.physics.layout import (
     new_record,
     probe_columns,
 )
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.time_loop import advance_by, kernel_of
 from yehu_server.simulation.run import pull
 

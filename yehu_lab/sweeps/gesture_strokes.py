@@ -23,8 +23,8 @@ from yehu_lab.regimes.strokes import (
 )
 from yehu_lab.sweeps.axes import Axis, Value
 from yehu_lab.sweeps.note_strokes import distinct
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.layout import F_HAMMER, V_B
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.note_tables import wave_speed
 from yehu_server.errors import ParameterError
 from yehu_server.scores.gesture import CONTROLS, Gesture, gesture_from

@@ -20,10 +20,10 @@ from yehu_lab.regimes.strokes import (
     prepared,
 )
 from yehu_lab.sweeps.axes import Axis
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.elementary import log
 from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, TEXTURE, V_B, X_B
-from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.player.note_tables import (
     OPEN_NOTES,
     PITCHES,

@@ -13,8 +13,8 @@ from typing import Any, Literal, Protocol
 
 from yehu_server.compile.jit import IS_PLAIN, Native
 from yehu_server.core.engine.warming import CALLED, COMPILING, warm_up
+from yehu_server.core.physics.default_quantities import Body, Quantities, override, read_quantities
 from yehu_server.core.physics.grid import MAX_RATE, MIN_RATE
-from yehu_server.core.physics.quantities import Body, Quantities, override, read_quantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, find
 from yehu_server.playing.mapping import DEFAULT, load

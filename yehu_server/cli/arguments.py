@@ -20,7 +20,7 @@ from yehu_server.util.files import check_free, check_target, replace_any, shippe
 from yehu_server.util.hints import command_name
 
 if TYPE_CHECKING:
-    from yehu_server.core.physics.quantities import Quantities
+    from yehu_server.core.physics.default_quantities import Quantities
     from yehu_server.rendering.cluster import Cluster
 
 
@@ -202,7 +202,7 @@ def add_instrument(parser: argparse.ArgumentParser) -> None:
 
 def instrument_of(arguments: argparse.Namespace) -> Quantities:
     """The quantities that the option of `add_instrument` asks for; raises YehuError."""
-    from yehu_server.core.physics.quantities import Quantities, read_quantities
+    from yehu_server.core.physics.default_quantities import Quantities, read_quantities
 
     return read_quantities(arguments.instrument) if arguments.instrument else Quantities()
 

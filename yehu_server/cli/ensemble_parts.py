@@ -16,7 +16,7 @@ from yehu_server.errors import EnsembleError, ParameterError, YehuError
 from yehu_server.scores.score import Score, concatenate
 
 if TYPE_CHECKING:
-    from yehu_server.core.physics.quantities import Quantities
+    from yehu_server.core.physics.default_quantities import Quantities
     from yehu_server.core.player.note_range import NoteRange
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Part

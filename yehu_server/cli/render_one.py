@@ -27,7 +27,7 @@ from yehu_server.util.files import check_distinct, make_folder, replace_any
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from yehu_server.core.physics.quantities import Quantities
+    from yehu_server.core.physics.default_quantities import Quantities
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.rendering.options import Options
     from yehu_server.rendering.summary import PartSummary, Summary

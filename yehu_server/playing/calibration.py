@@ -19,8 +19,8 @@ import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.elementary import exp2
-from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.physics.shelf import shelf_gain
 from yehu_server.core.player.bowing import (
     AT_FIRM,

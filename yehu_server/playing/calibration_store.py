@@ -18,7 +18,7 @@ import numpy as np
 
 from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import data_folder
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.note_tables import (
     GAINS,
     OPEN_NOTES,

@@ -10,7 +10,7 @@ from typing import Any
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.quantities import Quantities, read_quantities
+from yehu_server.core.physics.default_quantities import Quantities, read_quantities
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.core.player.velocity import NEUTRAL_VELOCITY

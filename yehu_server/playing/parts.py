@@ -19,8 +19,8 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.midi.section_players import DISTANCE, GAIN, OWN_SEED, PAN, own_value
+from yehu_server.core.physics.default_quantities import Body, Quantities, StringQuantities
 from yehu_server.core.physics.elementary import exp2, sin_and_cos
-from yehu_server.core.physics.quantities import Body, Quantities, StringQuantities
 from yehu_server.core.physics.radiation import pole_of
 from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.core.player.parameter_indices import INDEX

@@ -7,8 +7,8 @@ note is stopped and bowed as the note of the yehu that lies as far above the ope
 
 from __future__ import annotations
 
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elementary import log2
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.note_range import NoteRange
 from yehu_server.core.player.note_tables import OPEN_NOTES, wave_speed
 from yehu_server.errors import ParameterError

@@ -15,7 +15,7 @@ import numpy as np
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import part_specs
 from yehu_server.playing.stringing import notes_of as range_of

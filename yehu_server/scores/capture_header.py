@@ -12,14 +12,14 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, STRINGS
-from yehu_server.core.physics.quantities import (
+from yehu_server.core.physics.default_quantities import (
     Body,
     Quantities,
     check_body,
     measured_body,
     override,
 )
+from yehu_server.core.physics.layout import MAX_MODES, MAX_SECTIONS, STRINGS
 from yehu_server.core.player.bowing import NOTES, default_bowing_table
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.note_tables import NoteTables
@@ -90,7 +90,7 @@ def _as_data(start: InstrumentSpec, before: Sequence[InstrumentSpec]) -> dict[st
 
 
 def _changes(own: Any, default: Any) -> dict[str, Any]:
-    """The differences between quantities, as ``physics.quantities.override`` takes them."""
+    """The differences between quantities, as ``physics.default_quantities.override`` takes them."""
     changes: dict[str, Any] = {}
     for item in fields(own):
         value, base = getattr(own, item.name), getattr(default, item.name)

@@ -12,8 +12,8 @@ import numpy as np
 
 from yehu_server.core.controls.record import PARK_AFTER_S
 from yehu_server.core.physics import layout
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.grid import MIN_RATE
-from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.values import brief, number

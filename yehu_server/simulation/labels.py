@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.scores.gesture import CONTROLS
 
 OF_TIME, OF_FINGER = ("time",), ("time", "finger")

@@ -18,10 +18,10 @@ import numpy as np
 from yehu_server.compile.machine_code import SIMULATING
 from yehu_server.core.physics import kernel, layout, planes, time_loop
 from yehu_server.core.physics.bow import friction_bound
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.layout import GHOST, LEDGER, STRINGS
 from yehu_server.core.physics.modal_string import largest_compliance, modal_shape, pull_modal
 from yehu_server.core.physics.pluck import pluck_string, pull_string
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import OutputError
 from yehu_server.scores.gesture import CONTROLS, Gesture, Pluck
 from yehu_server.simulation.labels import as_data, as_json, dimensions, hash_of, label_of

@@ -10,7 +10,7 @@ from sound import bow, rms, run, run_for
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.mailbox import APPLIED_AT_ONCE
 from yehu_server.core.engine.spec import InstrumentSpec
-from yehu_server.core.physics.quantities import Quantities, StringQuantities
+from yehu_server.core.physics.default_quantities import Quantities, StringQuantities
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import ENGINE, TABLE
 

@@ -7,7 +7,7 @@ import numpy as np
 import reference as ref
 
 from yehu_server.core.physics import kernel, layout, time_loop
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.string import set_Delta_u
 
 

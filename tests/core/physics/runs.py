@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics import kernel, layout, planes, time_loop
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.string import set_Delta_u
 
 COLUMNS = {

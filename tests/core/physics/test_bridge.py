@@ -11,7 +11,7 @@ from core.physics.runs import play
 
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics.bridge import advance_bridge
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 YEHU = Quantities()
 MODES = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())[

@@ -14,7 +14,7 @@ import scipy
 from core.physics.runs import bump, rows, shaped
 
 from yehu_server.core.physics import kernel, layout, time_loop
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 # The finger out of reach: only strings and bridge move, and nothing is radiated.
 YEHU = replace(

@@ -8,7 +8,7 @@ import pytest
 from core.physics.runs import bump, play, shaped
 
 from yehu_server.core.physics import kernel
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 YEHU = Quantities()
 X_C = YEHU.bridge_x

@@ -8,7 +8,7 @@ from core.physics.runs import play, rows
 from pitch import cents, pitch_of
 
 from yehu_server.core.physics import kernel, layout, time_loop
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 YEHU = Quantities()
 FINGER = YEHU.finger

@@ -8,8 +8,8 @@ import pytest
 from core.physics.runs import play
 
 from yehu_server.core.physics import refined
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.friction_curve import solve_curve
-from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.errors import ParameterError
 
 YEHU = Quantities()

@@ -10,9 +10,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from yehu_server.core.physics import layout
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.friction import MAX_ITERATIONS
 from yehu_server.core.physics.hair_width import MAX_EVALUATIONS, release_points, solve_points
-from yehu_server.core.physics.quantities import Quantities, override
 
 YEHU = Quantities()
 BOTH = {"torsion": "on", "bow": {"width": 0.008}}

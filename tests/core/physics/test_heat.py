@@ -5,7 +5,7 @@ import pytest
 from core.physics.runs import play
 
 from yehu_server.core.physics import kernel
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.rosin_heat import static_coefficient
 
 THERMAL = override(Quantities(), {"bow": {"friction": "thermal"}})

@@ -10,7 +10,7 @@ import pytest
 
 from yehu_lab.plot.cells import RATE_ERROR
 from yehu_server import simulate
-from yehu_server.core.physics.quantities import read_quantities
+from yehu_server.core.physics.default_quantities import read_quantities
 from yehu_server.util.files import shipped_folder
 
 EXAMPLE = shipped_folder("examples") / "ideal_string.toml"

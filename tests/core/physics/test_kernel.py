@@ -8,7 +8,7 @@ from core.physics.runs import bump, play, rows, shaped
 from pitch import cents, pitch_of
 
 from yehu_server.core.physics import kernel, layout, time_loop
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.errors import ParameterError
 
 YEHU = Quantities()

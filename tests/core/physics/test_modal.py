@@ -9,7 +9,7 @@ from pitch import cents
 
 from yehu_server.api.simulated import simulate
 from yehu_server.core.physics import kernel, layout, planes, refined, time_loop
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.errors import ParameterError
 from yehu_server.scores.gesture import Pluck
 from yehu_server.simulation.run import pull

@@ -12,7 +12,7 @@ from core.physics.test_energy import balanced
 from core.physics.test_hair_width import of_modes
 
 from yehu_server.core.physics import layout
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 
 YEHU = Quantities()
 INSTRUMENTS, SECONDS = 200, 0.15

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 
 from yehu_server.core.physics import kernel, layout, refined, time_loop
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 
 RATE = 44100.0
 FRAMES = 12

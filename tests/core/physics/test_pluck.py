@@ -5,7 +5,7 @@ import pytest
 from core.physics.runs import play
 
 from yehu_server.core.physics import layout
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 
 YEHU = Quantities()
 

@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.core.physics.grid import check_rate, intervals
-from yehu_server.core.physics.layout import MAX_INTERVALS
-from yehu_server.core.physics.quantities import (
+from yehu_server.core.physics.default_quantities import (
     Quantities,
     override,
     read_body,
     read_quantities,
 )
+from yehu_server.core.physics.grid import check_rate, intervals
+from yehu_server.core.physics.layout import MAX_INTERVALS
 from yehu_server.errors import ParameterError
 from yehu_server.scores.gesture import gesture_from, on_instrument
 

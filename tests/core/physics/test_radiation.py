@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.physics import kernel, layout
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.radiation import radiate
 
 RADIATION = json.loads(files("yehu_server.core.physics").joinpath("body.json").read_text())[

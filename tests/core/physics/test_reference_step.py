@@ -14,8 +14,8 @@ from core.physics.adapter import kernel_state, reference_params, step_kernel, st
 
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics.bow import friction_bound
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.friction import solve_friction
-from yehu_server.core.physics.quantities import Quantities
 
 YEHU = Quantities()
 RATES = (22050.0, 44100.0, 96000.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from core.physics.runs import play
 
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.rosin_texture import texture
 
 YEHU = Quantities()

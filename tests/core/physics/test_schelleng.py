@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from yehu_server.core.physics import kernel
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.layout import MAX_FINGERS
-from yehu_server.core.physics.quantities import Quantities, override
 from yehu_server.core.physics.schelleng import (
     PARTIALS,
     bridge_conductance,

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from pitch import cents
 
 from yehu_server.core.physics import kernel, layout
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.grid import (
     cubic_weights,
     interpolate,
@@ -15,7 +16,6 @@ from yehu_server.core.physics.grid import (
     overlap,
     spread,
 )
-from yehu_server.core.physics.quantities import Quantities, override
 
 YEHU = Quantities()
 few = settings(max_examples=40)

@@ -10,9 +10,9 @@ from pitch import cents
 
 from yehu_server.core.physics import kernel, layout
 from yehu_server.core.physics import string as string_module
+from yehu_server.core.physics.default_quantities import Quantities, StringQuantities
 from yehu_server.core.physics.grid import intervals, least_spacing
 from yehu_server.core.physics.kernel import derive
-from yehu_server.core.physics.quantities import Quantities, StringQuantities
 from yehu_server.core.physics.string import advance_nodes, prepare_strings, support
 
 PARTIALS = 10

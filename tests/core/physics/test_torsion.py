@@ -5,7 +5,7 @@ import pytest
 from core.physics.runs import play
 
 from yehu_server.core.physics import kernel, layout, refined, time_loop
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.torsion import place_twist
 from yehu_server.errors import ParameterError
 

@@ -10,7 +10,7 @@ from core.physics.test_energy import balanced, performance
 from core.physics.test_hair_width import of_modes
 
 from yehu_server.core.physics import kernel, layout, planes, skin, time_loop
-from yehu_server.core.physics.quantities import Quantities, override
+from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.errors import ParameterError
 
 YEHU = Quantities()

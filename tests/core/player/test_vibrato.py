@@ -8,7 +8,7 @@ import pytest
 from held_notes import Playing
 
 from yehu_server.core.controls.slots import DEPTH, UPWARD
-from yehu_server.core.physics.quantities import measured_body
+from yehu_server.core.physics.default_quantities import measured_body
 from yehu_server.core.player.vibrato_table import (
     CENTRE,
     DEFAULT_DEPTH_CENTS,

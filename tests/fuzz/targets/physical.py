@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from fuzz.target import target, words, written
 
-from yehu_server.core.physics.quantities import read_body, read_quantities
+from yehu_server.core.physics.default_quantities import read_body, read_quantities
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.scores.gesture import Gesture, gesture_from, read_gesture
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from lab.body.bodies import admittance
 
-from yehu_server.core.physics.quantities import read_quantities
+from yehu_server.core.physics.default_quantities import read_quantities
 
 HZ = np.arange(300.0, 2500.0, 6.0)
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lab.body.bodies import DAMPING, HZ, MASS, admittance, off_db, rms
 
 from yehu_lab.body import Curve, Measurement, fit
-from yehu_server.core.physics.quantities import Quantities, measured_body
+from yehu_server.core.physics.default_quantities import Quantities, measured_body
 from yehu_server.errors import MeasurementError
 
 GRID = np.geomspace(200.0, 5000.0, 5000)

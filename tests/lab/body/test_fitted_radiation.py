@@ -7,7 +7,7 @@ from lab.body.bodies import off_db, radiation, rms
 from yehu_lab.body import Curve
 from yehu_lab.body.sections import fit_sections, usable
 from yehu_server.core.physics import kernel
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.radiation import response
 
 GRID = np.geomspace(200.0, 5000.0, 4000)

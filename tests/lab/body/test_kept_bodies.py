@@ -9,7 +9,7 @@ import pytest
 from lab.body.bodies import off_db, rms
 
 from yehu_lab.body.body_file import read_fit
-from yehu_server.core.physics.quantities import (
+from yehu_server.core.physics.default_quantities import (
     read_body,
     read_quantities,
 )

@@ -5,7 +5,7 @@ import pytest
 
 from yehu_lab.dataset.description import description_of
 from yehu_lab.dataset.notes import melody, stroke
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.errors import ParameterError
 
 # Well between Schelleng's limits; then with hardly any force, and with far too much.

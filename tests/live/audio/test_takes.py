@@ -9,7 +9,7 @@ import pytest
 import soundfile
 
 from yehu_server.errors import OutputError
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.audio import recordings
 from yehu_server.scores.capture import read_capture
 

@@ -10,7 +10,7 @@ from collections import Counter
 import pytest
 from wire import errors
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.work_queue import Shares
 
 

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 from wire import FakePeer
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.clients import (
     SLICE_S,
     Clients,

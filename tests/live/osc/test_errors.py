@@ -7,7 +7,7 @@ from typing import Any
 
 from wire import FakePeer
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 
 NAN, INF = math.nan, math.inf
 NOTHING: tuple[Any, ...] = ()

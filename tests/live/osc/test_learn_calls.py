@@ -6,7 +6,7 @@ import mido
 import pytest
 from midi_input import receive
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc import context, learn_calls
 from yehu_server.playing.mapping import load
 

@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from yehu_server.errors import RefusedError
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.osc_addresses import (
     matches,
 )

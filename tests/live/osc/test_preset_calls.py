@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc import context
 from yehu_server.playing.preset_folders import Presets
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import pytest
 
 from yehu_server.errors import DeviceError
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Allowed
 from yehu_server.live.osc import receiving
 from yehu_server.live.osc.packets import pack

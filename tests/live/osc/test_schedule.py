@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from wire import FakePeer
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc import schedule
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
 

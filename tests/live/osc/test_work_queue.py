@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from wire import FakePeer
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.work_queue import SLICE_NS, TURN_NS, Shares, WorkQueue
 from yehu_server.system import clocks
 

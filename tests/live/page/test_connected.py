@@ -23,10 +23,10 @@ from waiting import PATIENCE_S, until
 from yehu_server.ahead.interpreter import snapshot_layout, snapshot_length
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RAMP, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.options import PartOptions
+from yehu_server.live.page.page_sockets import COMMANDS, NO_PART, NOW, SNAPSHOT, WRONG
 from yehu_server.live.page.players import CHANNELS, LOWEST
-from yehu_server.live.page.sockets import COMMANDS, NO_PART, NOW, SNAPSHOT, WRONG
 from yehu_server.live.server import Server
 from yehu_server.params.table import TABLE
 from yehu_server.playing.options import PlayingOptions

@@ -24,12 +24,12 @@ from yehu_server.core.player.commands import (
     WRITE,
 )
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.page import guests as admitting
-from yehu_server.live.page import sockets as serving
+from yehu_server.live.page import page_sockets as serving
 from yehu_server.live.page.guests import Admission, Guests
+from yehu_server.live.page.page_sockets import NO_PIN, SETTINGS, PageSockets
 from yehu_server.live.page.players import OWNER_ONLY, permitted
-from yehu_server.live.page.sockets import NO_PIN, SETTINGS, PageSockets
 from yehu_server.params.table import TABLE
 
 HOST, ELSEWHERE, HOME = "127.0.0.1", "192.0.2.7", "192.0.2.9"

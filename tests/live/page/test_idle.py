@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
-from yehu_server.live.page.sockets import PageSockets
+from yehu_server.live.page.page_sockets import PageSockets
 
 
 class Loop(asyncio.SelectorEventLoop):

@@ -10,7 +10,7 @@ import pytest
 from web_client import BINARY, TEXT, Refused, WebSocket, ask
 from wire import Message, Wire
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.web.server import WebOptions
 from yehu_server.live.web.web_sockets import WebPeer

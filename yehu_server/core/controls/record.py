@@ -18,9 +18,9 @@ from yehu_server.core.controls.slots import (
     TUNING,
     UPPER_BOUNDS,
 )
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS
 from yehu_server.core.physics.lobes import DIRECTIONS
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.params.table import ENGINE
 
 PARK_AFTER_S = 0.04  # a finger waits so long where it was lifted

@@ -83,10 +83,10 @@ class Instrument:
         if memory is None:
             memory = new_memory(1)
             self._stage = np.frombuffer(memory, STAGE, offset=RIG_BYTES, count=1)
-        self._memory = memory
+        self.memory = memory  # the buffer that holds all its state
         self._rig = np.frombuffer(memory, RIG, count=1)
-        self._address = self._rig.ctypes.data
-        self._clock = self._address
+        # Of the rig: the `userdata` of ``engine.native.callback``.
+        self.address = self._clock = int(self._rig.ctypes.data)
         self._rig["model"] = kernel.prepare(spec.quantities, spec.rate, MAX_FINGERS)
         self._rig["mail"]["intake"] = LIVE_INTAKE if is_live else RING
         self._rig["mail"]["at_once"] = LIVE_BUDGET if is_live else UNLIMITED
@@ -134,7 +134,7 @@ class Instrument:
         mail[:] = np.zeros(1, mail.dtype)
         for name, number in kept.items():
             mail[name] = number
-        self.play_alone()
+        self.begin_part(plain_tables())
         rig["meters"] = np.zeros(1, METERS)
         rig["meters"]["rate"], rig["meters"]["pitch"] = self.rate, np.nan
         rig["meters"]["loop"]["ns_per_frame"] = 1e9 / self.rate
@@ -142,13 +142,6 @@ class Instrument:
         self._meters = rig["meters"].copy()  # the last consistent copy
         rig["taped"], rig["version"] = 0, 0
         self.gaps: list[tuple[int, int]] = []
-
-    def play_alone(self) -> None:
-        """Reset the part to one instrument without mapping tables.
-
-        Nothing may post or compute meanwhile.
-        """
-        self.begin_part(plain_tables())
 
     def begin_part(self, tables: Array, players: int = 1) -> None:
         """Begin a part anew, as the first of the instruments that play it: the next on the stage.
@@ -185,16 +178,6 @@ class Instrument:
     def tables(self) -> Any:
         """The tables of its part: ndarray [shape=(SLOTS,), dtype=``midi.tables.TABLES``]."""
         return self._rig["tables"][0]
-
-    @property
-    def address(self) -> int:
-        """Address of the rig: the `userdata` of ``engine.native.callback``."""
-        return int(self._address)
-
-    @property
-    def memory(self) -> Any:
-        """The buffer that holds all its state."""
-        return self._memory
 
     @property
     def frame(self) -> int:
@@ -283,7 +266,7 @@ class Instrument:
         """
         frame = self.frame if frame is None else frame
         kind += sender << KIND_BITS
-        return bool(native.post.call(self._address, frame, kind, index, value, other))
+        return bool(native.post.call(self.address, frame, kind, index, value, other))
 
     def has_waiting(self, sender: int) -> bool:
         """Whether events of a sender (see `post`) wait for their frame."""
@@ -322,7 +305,7 @@ class Instrument:
             raise TypeError("an instrument of an ensemble is played by the ensemble")
         if len(out):
             address = addressof(c_float.from_buffer(out))  # four times as fast as `out.ctypes`
-            native.callback.call(None, address, len(out), None, 0, self._address)
+            native.callback.call(None, address, len(out), None, 0, self.address)
 
     def come_to_rest(self) -> None:
         """Put the model to rest at once, and move all parameters to their targets.
@@ -363,7 +346,7 @@ class Instrument:
         self._rig["meters"]["running"] = 0
         mail = self._rig["mail"][0]
         repair_queues(self._rig["events"][0], self._rig["notes"][0], mail)
-        index_notes.call(self._address)
+        index_notes.call(self.address)
         mail["waiting"] = repair(self._rig["heap"][0], int(mail["waiting"]))
 
     def skip_to(self, frame: int) -> None:
@@ -380,7 +363,7 @@ class Instrument:
         """The last published meters: a record of dtype ``telemetry.METERS``."""
         meters = np.zeros(1, METERS)
         for _ in range(native.TRIES):
-            if native.read_meters.call(self._address, meters.ctypes.data):
+            if native.read_meters.call(self.address, meters.ctypes.data):
                 self._meters = meters
                 break
         return self._meters[0]
@@ -400,7 +383,7 @@ class Instrument:
     def applied_commands(self) -> Array:
         """The commands applied since the last call: ndarray [shape=(commands,), dtype=COMMAND]."""
         commands = np.zeros(RING, COMMAND)
-        count = native.read_reports.call(self._address, commands.ctypes.data, RING)
+        count = native.read_reports.call(self.address, commands.ctypes.data, RING)
         return commands[:count].copy()
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.bowing import default_bowing_table
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.note_range import NoteRange

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import BOW, STRINGS
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
 from yehu_server.core.physics.torsion import largest_yielding
 

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elementary import elementwise, tan
 from yehu_server.core.physics.grid import cubic_weights, interpolate
 from yehu_server.core.physics.layout import MAX_MODES, STRINGS, padded_length
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Motion, Work
 from yehu_server.core.physics.tension import eliminate_tension
 from yehu_server.errors import ParameterError

@@ -13,10 +13,10 @@ import math
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.fixed_power import power, prepare_power
 from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import CONTROLS_PER_FINGER, FINGER_CONTROLS, STRINGS
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Contacts, Model, Motion, Work
 
 

@@ -18,7 +18,7 @@ import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.records import Model
 from yehu_server.errors import ParameterError
 

@@ -12,8 +12,8 @@ import math
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import StringQuantities
 from yehu_server.core.physics.layout import GHOST, MAX_INTERVALS, STENCIL
-from yehu_server.core.physics.quantities import StringQuantities
 from yehu_server.core.physics.records import Array
 from yehu_server.errors import ParameterError
 

@@ -27,11 +27,11 @@ import numpy as np
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.bow import STEEPEST
 from yehu_server.core.physics.contacts import place_hair
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.friction import power_off_law, solve_friction
 from yehu_server.core.physics.friction_curve import curve_force, solve_curve
 from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import LEVELS, POINT, STRINGS
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Contacts, Model, Motion, Refined, State, Work
 from yehu_server.core.physics.rosin_heat import static_coefficient
 from yehu_server.core.physics.torsion import twist_travel

@@ -36,6 +36,7 @@ from yehu_server.core.physics.contacts import (
     place_contacts,
     response,
 )
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elimination import (
     Symmetric,
     back_substitute_fingers,
@@ -70,7 +71,6 @@ from yehu_server.core.physics.layout import (
     new_record,
 )
 from yehu_server.core.physics.pluck import pluck
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.radiation import prepare_radiation, radiate
 from yehu_server.core.physics.records import Array, Model, Records, State
 from yehu_server.core.physics.rosin_heat import prepare_heat, static_coefficient, warm

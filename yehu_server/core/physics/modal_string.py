@@ -29,6 +29,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Quantities, StringQuantities
 from yehu_server.core.physics.elementary import cos, elementwise, exp, kernel_sincospi, sin, tanh
 from yehu_server.core.physics.layout import (
     GHOST,
@@ -39,7 +40,6 @@ from yehu_server.core.physics.layout import (
     VECTOR,
     lined_up,
 )
-from yehu_server.core.physics.quantities import Quantities, StringQuantities
 from yehu_server.core.physics.records import Modal, Model, Motion
 from yehu_server.core.physics.torsion import MAX_OF_NYQUIST, NEGLIGIBLE_M
 from yehu_server.errors import ParameterError

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.physics import refined
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.fixed_power import TABLES, prepare_power
 from yehu_server.core.physics.layout import (
     BOW,
@@ -34,7 +35,6 @@ from yehu_server.core.physics.layout import (
     new_record,
 )
 from yehu_server.core.physics.modal_string import MODAL, prepare_modal
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.errors import ParameterError
 
 BOWING, NORMAL = 0, 1  # planes

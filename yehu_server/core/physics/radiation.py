@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Body
 from yehu_server.core.physics.elementary import (
     asin,
     cos,
@@ -24,7 +25,6 @@ from yehu_server.core.physics.elementary import (
     sincospi,
 )
 from yehu_server.core.physics.layout import MAX_SECTIONS, MAX_TAPS, USUAL_SECTIONS
-from yehu_server.core.physics.quantities import Body
 from yehu_server.core.physics.records import Model, Motion
 from yehu_server.errors import ParameterError
 

@@ -32,6 +32,7 @@ from yehu_server.core.physics.contacts import (
     place_contacts,
     response,
 )
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elimination import (
     assemble_contacts,
     back_substitute_jointly,
@@ -73,7 +74,6 @@ from yehu_server.core.physics.layout import (
     new_record,
 )
 from yehu_server.core.physics.pluck import pluck
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Records, Refined, State
 from yehu_server.core.physics.rosin_texture import grip
 from yehu_server.core.physics.string import advance_strings, support

@@ -16,9 +16,9 @@ from __future__ import annotations
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elementary import elementwise, exp
 from yehu_server.core.physics.layout import HEAT_COUNT, STRINGS
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Model, Motion, Work
 
 MAX_SLIP_SPEED = 3.5  # v_s; by there the Stribeck curve has fallen to mu_C

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elementary import elementwise, sin
 from yehu_server.core.physics.grid import intervals
 from yehu_server.core.physics.layout import GHOST, LEVELS, STENCIL, padded_length
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Motion, Work
 
 

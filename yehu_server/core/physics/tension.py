@@ -20,8 +20,8 @@ from __future__ import annotations
 from typing import Any
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.layout import GHOST, padded_length
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Model, Motion, Work
 
 

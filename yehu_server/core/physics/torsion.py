@@ -23,9 +23,9 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elementary import cos, elementwise, exp, kernel_sincospi, sin, tanh
 from yehu_server.core.physics.layout import LEVELS, MAX_TWISTS, STRINGS, VECTOR
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.physics.records import Array, Contacts, Model, Refined, Work
 from yehu_server.errors import ParameterError
 

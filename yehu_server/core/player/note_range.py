@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from yehu_server.core.physics.quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.note_tables import OPEN_NOTES, NoteTables
 
 REACHES = tuple(string.reach for string in Quantities().strings)

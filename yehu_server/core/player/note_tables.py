@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elementary import exp2
-from yehu_server.core.physics.quantities import Quantities
 
 Tables = tuple[tuple[tuple[float, ...], ...], ...]  # of strings, notes, speeds
 

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.layout import STRINGS
-from yehu_server.core.physics.quantities import Quantities
 from yehu_server.core.player.bowing import (
     BOW_POSITIONS,
     BOWING_SIZE,

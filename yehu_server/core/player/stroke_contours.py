@@ -111,16 +111,26 @@ CONTOURS = np.dtype(
 
 
 @compiled_exactly
-def next_chance(p: Any) -> float:
-    """The next random number of the contours, -1 to 1."""
-    p.contours.random_count += 1
-    return chance(p, CONTOURS_FROM + p.contours.random_count)
+def next_chance(p: Any, drawn: Any, start: int) -> float:
+    """The next random number, -1 to 1, of those that a record has drawn.
+
+    `start`: where its own begin among the seed's.
+    """
+    drawn.random_count += 1
+    return chance(p, start + drawn.random_count)
+
+
+@compiled_exactly
+def next_deviate(p: Any, drawn: Any, start: int) -> float:
+    """A number of mean 0 and variance 1, within 3; a uniform one has one of 1/3."""
+    total = next_chance(p, drawn, start) + next_chance(p, drawn, start)
+    return total + next_chance(p, drawn, start)
 
 
 @compiled_exactly
 def contour_deviate(p: Any) -> float:
-    """A number of mean 0 and variance 1, within MAX_DEVIATE; a uniform one has one of 1/3."""
-    total = next_chance(p) + next_chance(p) + next_chance(p)
+    """The same, within MAX_DEVIATE."""
+    total = next_deviate(p, p.contours, CONTOURS_FROM)
     return float(min(max(total, -MAX_DEVIATE), MAX_DEVIATE))
 
 
@@ -196,7 +206,8 @@ def go(s: Any, to: float, begins: float, lasts: float) -> None:
 def wander_on(p: Any, i: int, now: float) -> None:
     """Begin the next segment of a wandering."""
     k = p.contours
-    lasts = SHORTEST_S[i] + (LONGEST_S[i] - SHORTEST_S[i]) * 0.5 * (1.0 + next_chance(p))
+    share = 0.5 * (1.0 + next_chance(p, k, CONTOURS_FROM))
+    lasts = SHORTEST_S[i] + (LONGEST_S[i] - SHORTEST_S[i]) * share
     go(k.wander[i], k.wandering * WANDERS[i] * contour_deviate(p), now, lasts)
 
 

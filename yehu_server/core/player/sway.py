@@ -17,13 +17,18 @@ from yehu_server.core.controls.slots import SWAY
 from yehu_server.core.physics.elementary import tanh
 from yehu_server.core.physics.lobes import DIRECTIONS
 from yehu_server.core.player.parameter_indices import NOTE_LENGTH, VARIATION
-from yehu_server.core.player.phrasing import chance
-from yehu_server.core.player.stroke_contours import CONTOURS_FROM, SEGMENT, follow, go
-from yehu_server.params.table import find
+from yehu_server.core.player.stroke_contours import (
+    CONTOURS_FROM,
+    SEGMENT,
+    follow,
+    go,
+    next_chance,
+    next_deviate,
+)
 
-# The sizes below are those at the default of /body/sway. By ear, and by how far partials move in
-# recordings (scripts/liveliness.py).
-USUAL_SWAY, USUAL_VARIATION = find("/body/sway").default, find("/playing/variation").default
+# The sizes below are those at this sway and variation, whatever the defaults are. By ear, and by
+# how far partials move in recordings (scripts/liveliness.py).
+USUAL_SWAY, USUAL_VARIATION = 0.5, 0.25
 WANDERS = 0.75  # standard deviation of the wandering
 SHORTEST_S, LONGEST_S = 0.6, 1.8  # from one side to the other
 STROKE, UNEVEN = np.array((0.9, -0.75)), 0.5  # of a stroke of WHOLE_S; their standard deviation
@@ -45,19 +50,6 @@ SWAY_STATE = np.dtype(
 
 
 @compiled_exactly
-def next_chance(p: Any) -> float:
-    """The next random number of the sway, -1 to 1."""
-    p.sway.random_count += 1
-    return chance(p, SWAY_FROM + p.sway.random_count)
-
-
-@compiled_exactly
-def next_deviate(p: Any) -> float:
-    """A number of mean 0 and variance 1, within 3; a uniform one has one of 1/3."""
-    return next_chance(p) + next_chance(p) + next_chance(p)
-
-
-@compiled_exactly
 def swing(p: Any, is_slur: bool) -> None:
     """Begin to swing with a note."""
     s = p.sway
@@ -66,7 +58,7 @@ def swing(p: Any, is_slur: bool) -> None:
     s.side = -BACK * s.side if is_slur else p.direction
     lasts = known_s if known_s > 0.0 else OPEN_S
     for k in range(DIRECTIONS):
-        to = size * s.side * STROKE[k] * (1.0 + UNEVEN * next_deviate(p))
+        to = size * s.side * STROKE[k] * (1.0 + UNEVEN * next_deviate(p, s, SWAY_FROM))
         go(s.stroke[k], to, s.time_s, lasts)
 
 
@@ -82,9 +74,9 @@ def advance_sway(p: Any, c: Any) -> None:
         w = s.wander[k]
         if is_moving:
             if s.time_s >= w.begins + w.lasts:
-                share = 0.5 * (1.0 + next_chance(p))
+                share = 0.5 * (1.0 + next_chance(p, s, SWAY_FROM))
                 lasts = SHORTEST_S + (LONGEST_S - SHORTEST_S) * share
-                go(w, WANDERS * next_deviate(p), s.time_s, lasts)
+                go(w, WANDERS * next_deviate(p, s, SWAY_FROM), s.time_s, lasts)
             follow(w, s.time_s)
             follow(s.stroke[k], s.time_s)
         to = amount * (w.now + s.stroke[k].now)

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from yehu_server.core.physics.default_quantities import Body
 from yehu_server.core.physics.elementary import decibels, elementwise, exp2
-from yehu_server.core.physics.quantities import Body
 from yehu_server.core.physics.radiation import magnitude, response_parts
 from yehu_server.core.physics.shelf import shelf_gain
 from yehu_server.core.player.brilliance import usual_shelf

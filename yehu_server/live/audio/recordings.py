@@ -13,7 +13,7 @@ import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.util.files import create, discard, error_reason, is_removed, path_inside
 from yehu_server.util.sound_file import SoundWriter, format_of
 from yehu_server.util.subtypes import DEFAULT_SUBTYPES, SUBTYPES

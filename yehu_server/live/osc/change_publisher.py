@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument

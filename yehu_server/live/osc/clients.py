@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 
 from yehu_server.errors import shortened
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.change_publisher import ChangePublisher, Status, Subscriber, Values
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from yehu_server.errors import OutputError, YehuError, shortened
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack

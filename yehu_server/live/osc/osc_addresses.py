@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from functools import cache, lru_cache
 
 from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.status import PART_STATUS, STATUS, STATUS_PREFIX
 from yehu_server.live.part_addresses import (
     FIRST,

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 
 BUNDLE = b"#bundle\0"
 IMMEDIATELY = (0, 1)  # as a time tag

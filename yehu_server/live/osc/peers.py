@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 from pythonosc import slip
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Address
 from yehu_server.util.token_bucket import TokenBucket
 

@@ -17,10 +17,10 @@ import time
 from collections.abc import Iterator
 from functools import lru_cache, partial
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Address, Allowed, is_here
 from yehu_server.live.osc.handler import OscHandler
-from yehu_server.live.osc.open_sockets import open_both
+from yehu_server.live.osc.listening_sockets import open_both
 from yehu_server.live.osc.peers import (
     FramingError,
     Peer,

@@ -12,7 +12,7 @@ import heapq
 import itertools
 import time
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.work_queue import Shares
 from yehu_server.live.part_addresses import PART, part_of

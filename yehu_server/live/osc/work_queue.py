@@ -11,7 +11,7 @@ import socket
 from collections import OrderedDict, deque
 from collections.abc import Callable, Iterator
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.peers import Peer
 from yehu_server.system import clocks
 

@@ -9,7 +9,7 @@ from collections import OrderedDict
 from dataclasses import dataclass, field
 from typing import Any
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import is_here, plain
 from yehu_server.params.spec import Param
 from yehu_server.util.token_bucket import TokenBucket

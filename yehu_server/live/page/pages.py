@@ -10,7 +10,7 @@ from typing import Any
 from yehu_server.core.midi.section_players import OWN
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.errors import DeviceError
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Address
 from yehu_server.live.page.guests import Guests
 from yehu_server.live.page.players import CHANNELS, FIRST

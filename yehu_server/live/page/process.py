@@ -19,9 +19,9 @@ from aiohttp import web
 from yehu_server.core.player.note_range import NoteRange
 from yehu_server.live.network import Allowed
 from yehu_server.live.page.guests import Admission, Guests
+from yehu_server.live.page.page_sockets import PageSockets
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.page.site import HEADERS, Site
-from yehu_server.live.page.sockets import PageSockets
 from yehu_server.live.web.request_filter import Connections, check, own_names, serve_http
 from yehu_server.system.processes import LOWER, lower_priority
 from yehu_server.system.sockets import shared

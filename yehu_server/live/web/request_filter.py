@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 
 from aiohttp import web
 
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Allowed, is_here, is_ip_address, plain
 
 ENDING_S = 0.2  # to finish answers at the end

@@ -22,7 +22,7 @@ from prometheus_client.exposition import choose_encoder
 from prometheus_client.registry import Collector
 
 from yehu_server.errors import DeviceError, one_line
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Address, Allowed, format_address, plain
 from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.context import CallContext

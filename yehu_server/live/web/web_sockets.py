@@ -10,7 +10,7 @@ from typing import Any
 from aiohttp import WSMsgType, web
 
 from yehu_server.errors import RefusedError, shortened
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.peers import Peer, WebTraffic

@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Sequence
 
 from yehu_server.errors import one_line
+from yehu_server.scores.abc.keywords import ALTERS, CLEFS, MODES, PLAYED, PROPERTIES
 from yehu_server.scores.abc.tokens import ACCIDENTAL, ACCIDENTALS, CLEF, GLUED, KEY, PROPERTY
-from yehu_server.scores.abc.vocabulary import ALTERS, CLEFS, MODES, PLAYED, PROPERTIES
 from yehu_server.scores.written.layout import LETTERS, key_alter
 
 SHARPS = "FCGDAEB"  # in the order in which keys get them

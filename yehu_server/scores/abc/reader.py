@@ -14,7 +14,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from yehu_server.errors import ScoreError, one_line
-from yehu_server.scores.abc import vocabulary
+from yehu_server.scores.abc import keywords
 from yehu_server.scores.abc.fields import metre_of, order_of_parts
 from yehu_server.scores.abc.keys import properties_of
 from yehu_server.scores.abc.tokens import BLOCK, FIELD
@@ -67,7 +67,7 @@ def _tunes(text: str) -> tuple[list[str], list[list[str]]]:
             is_open = False
         if is_open:
             tunes[-1].append(line)
-        elif not tunes and line.startswith(("%%", *(f"{name}:" for name in vocabulary.FIELDS))):
+        elif not tunes and line.startswith(("%%", *(f"{name}:" for name in keywords.FIELDS))):
             head.append(line)  # others may be any text
     return head, tunes
 
@@ -104,7 +104,7 @@ class _Tune:
         self._title = ""
         self._in_music = False
         self._now: VoiceReader | None = None
-        self._shortcuts = dict(vocabulary.SHORTCUTS)
+        self._shortcuts = dict(keywords.SHORTCUTS)
 
     def read(self, lines: Sequence[str]) -> Written:
         for written in lines:
@@ -127,7 +127,7 @@ class _Tune:
         sections = self._sections(max(len(bars) for _, bars in parts))
         read = assembled(parts, self._title, self._unknown, self._warnings, sections)
         swings = any(voice.is_hornpipe for voice in self._voices.values())
-        return replace(read, remarks=(vocabulary.HORNPIPE,)) if swings else read
+        return replace(read, remarks=(keywords.HORNPIPE,)) if swings else read
 
     def _reader(self) -> VoiceReader:
         return self._now or self._voice("1")
@@ -140,7 +140,7 @@ class _Tune:
             metre = next((metre_of(text) for key, text in self._defaults[::-1] if key == "M"), None)
             if metre is not None and metre < 3:
                 voice.unit = Fraction(1, 4)
-            for key in [*"LMKQR", *vocabulary.SETTINGS]:
+            for key in [*"LMKQR", *keywords.SETTINGS]:
                 for letter, text in self._defaults:
                     if letter == key and (key != "Q" or not self._voices):
                         voice.field(letter, text)
@@ -151,7 +151,7 @@ class _Tune:
 
     def _check(self, name: str, value: str) -> None:
         """Tell of a value that a field or a directive cannot have."""
-        if name in vocabulary.VALUES and not vocabulary.VALUES[name].fullmatch(value.strip()):
+        if name in keywords.VALUES and not keywords.VALUES[name].fullmatch(value.strip()):
             self._unknown[one_line(f"{name}:{value}"[:40])] += 1
 
     def _field(self, letter: str, text: str) -> None:
@@ -169,13 +169,13 @@ class _Tune:
             self._take_voice(text)
         elif letter == "P":
             self._labels.append((text.strip()[:1], self._reader().label()))
-        elif self._in_music and letter in vocabulary.MUSIC_FIELDS:
+        elif self._in_music and letter in keywords.MUSIC_FIELDS:
             self._reader().field(letter, text)
-        elif letter in vocabulary.MUSIC_FIELDS:
+        elif letter in keywords.MUSIC_FIELDS:
             self._defaults.append((letter, text))
             self._in_music = letter == "K" or self._in_music
-        elif vocabulary.FIELDS.get(letter, vocabulary.LEFT_OUT) == vocabulary.LEFT_OUT:
-            self._unknown[vocabulary.NAMES.get(letter, f"{letter}:")] += 1
+        elif keywords.FIELDS.get(letter, keywords.LEFT_OUT) == keywords.LEFT_OUT:
+            self._unknown[keywords.NAMES.get(letter, f"{letter}:")] += 1
 
     def _directive(self, text: str) -> None:
         """Take a directive (11), of a line of its own or of an I: field."""
@@ -184,15 +184,13 @@ class _Tune:
         if name.lower() == "midi":
             name = f"MIDI {value.partition(' ')[0]}"
             setting, value = [*value.split(maxsplit=1), "", ""][:2]
-        if setting in vocabulary.SETTINGS:
+        if setting in keywords.SETTINGS:
             self._check(setting, value)
             if self._in_music:
                 self._reader().field(setting, value)
             else:
                 self._defaults.append((setting, value))
-        elif (
-            name[:1].isalpha() and re.sub(r"-?\d+$", "", name.lower()) not in vocabulary.DIRECTIVES
-        ):
+        elif name[:1].isalpha() and re.sub(r"-?\d+$", "", name.lower()) not in keywords.DIRECTIVES:
             self._unknown[one_line(f"%%{name}"[:40])] += 1
 
     def _take_voice(self, text: str) -> None:

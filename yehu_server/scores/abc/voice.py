@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from yehu_server.errors import ScoreError, one_line
-from yehu_server.scores.abc import fields, vocabulary
+from yehu_server.scores.abc import fields, keywords
 from yehu_server.scores.abc.keys import key_of, properties_of
 from yehu_server.scores.abc.tokens import KINDS, NOTE, NOTE_AT, TOKEN
 from yehu_server.scores.score import nearest_key
@@ -40,11 +40,11 @@ class VoiceReader:
         self._alters = dict.fromkeys(LETTERS, 0.0)
         self._fifths = 0
         self._properties = {"clef": 0, "octave": 0, "transpose": 0}
-        self._spread = vocabulary.SPREADS[0]
+        self._spread = keywords.SPREADS[0]
         self._ratio = (3, 1)  # of broken rhythm
         self.is_hornpipe = False
         self._before = Fraction(0)  # the length of the last bar
-        self._swing_unit: Fraction | None = vocabulary.SWUNG["C"]
+        self._swing_unit: Fraction | None = keywords.SWUNG["C"]
         self._metre: Fraction | None = Fraction(4)
         self._odd_times = 2  # of tuplets of 5, 7 and 9: 3 in compound time
         self._place = ("C", 0, 0.0)  # of the last note: letter, octave, accidental
@@ -88,15 +88,15 @@ class VoiceReader:
         elif letter == "M":
             self._metre = self._bar.metre = fields.metre_of(value)
             self._odd_times = 3 if value.strip() in ("6/8", "9/8", "12/8") else 2
-            self._swing_unit = vocabulary.SWUNG.get(value.strip())
+            self._swing_unit = keywords.SWUNG.get(value.strip())
         elif letter == "L":
             self.unit, self._lengths = fields.length_of(value) or self.unit, {}
         elif letter == "R":
             self.is_hornpipe = value.lower().startswith("hornpipe")
             self._ratio = (2, 1) if self.is_hornpipe else (3, 1)
         elif letter == "propagate-accidentals":
-            self._spread = value if value in vocabulary.SPREADS else self._spread
-        elif letter == "ratio" and vocabulary.VALUES["ratio"].fullmatch(value):
+            self._spread = value if value in keywords.SPREADS else self._spread
+        elif letter == "ratio" and keywords.VALUES["ratio"].fullmatch(value):
             long, short = value.split()
             self._ratio = int(long), int(short)
         elif letter == "Q":
@@ -169,7 +169,7 @@ class VoiceReader:
         octave = letter.islower() + octaves.count("'") - octaves.count(",")
         reached = name if self._spread == "pitch" else (name, octave)
         if sign:
-            alter = vocabulary.ALTERS[sign]
+            alter = keywords.ALTERS[sign]
             if self._spread != "not":
                 self._in_bar[reached] = alter
         elif (name, octave) in self._tied and reached not in self._in_bar:
@@ -259,7 +259,7 @@ class VoiceReader:
 
     def _begin_tuplet(self, count: int, ratio: list[str]) -> None:
         given = [*(int(each or 0) for each in ratio), 0, 0]
-        times = given[0] or vocabulary.TIMES.get(count, self._odd_times)
+        times = given[0] or keywords.TIMES.get(count, self._odd_times)
         notes = given[1] or count
         if count and times and notes < 64:
             self._tuplet = [Fraction(times, count)] * notes
@@ -280,15 +280,15 @@ class VoiceReader:
     # -- marks -------------------------------------------------------------------------------
 
     def _sign(self, name: str) -> None:
-        if name in vocabulary.DECORATIONS:
-            self._marks.append(Mark(*vocabulary.DECORATIONS[name]))
+        if name in keywords.DECORATIONS:
+            self._marks.append(Mark(*keywords.DECORATIONS[name]))
         elif name in DYNAMICS or name in FORCED:
             self._direct("sign", name)
-        elif name in vocabulary.WEDGES:
-            self._direct("wedge", vocabulary.WEDGES[name])
-        elif name.lower() in vocabulary.JUMPS:
-            self._bar.lines.jumps.add(vocabulary.JUMPS[name.lower()])
-        elif name not in vocabulary.IGNORED:
+        elif name in keywords.WEDGES:
+            self._direct("wedge", keywords.WEDGES[name])
+        elif name.lower() in keywords.JUMPS:
+            self._bar.lines.jumps.add(keywords.JUMPS[name.lower()])
+        elif name not in keywords.IGNORED:
             self._unknown[one_line(name[:40])] += 1
 
     def _text(self, text: str) -> None:

@@ -9,9 +9,9 @@ from xml.etree.ElementTree import Element
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
+from yehu_server.scores.musicxml.elements import tell
 from yehu_server.scores.musicxml.marks import VALUES, NoteMarks, neighbour, number
 from yehu_server.scores.musicxml.repeat_signs import RepeatSigns
-from yehu_server.scores.musicxml.vocabulary import tell
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import SEMITONES
 from yehu_server.scores.written.notated import MAX_BEATS, MAX_NOTES

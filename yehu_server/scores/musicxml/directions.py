@@ -6,8 +6,8 @@ from collections import Counter
 from fractions import Fraction
 from xml.etree.ElementTree import Element
 
+from yehu_server.scores.musicxml.elements import SCHEMA
 from yehu_server.scores.musicxml.marks import VALUES, number
-from yehu_server.scores.musicxml.vocabulary import SCHEMA
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
 from yehu_server.scores.written.voices import RawDirection

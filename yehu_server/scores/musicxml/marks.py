@@ -11,7 +11,7 @@ from fractions import Fraction
 from xml.etree.ElementTree import Element, SubElement
 
 from yehu_server.params.articulations import ARTICULATIONS
-from yehu_server.scores.musicxml.vocabulary import SCHEMA
+from yehu_server.scores.musicxml.elements import SCHEMA
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.layout import LETTERS, STEPS, key_alter, spelled
 from yehu_server.scores.written.notated import Mark, Note

@@ -23,7 +23,7 @@ from xml.parsers import expat
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.bars import BarReader
-from yehu_server.scores.musicxml.vocabulary import tell_strange
+from yehu_server.scores.musicxml.elements import tell_strange
 from yehu_server.scores.score import errors_name, printable, read_score_bytes
 from yehu_server.scores.written.assembly import assembled
 from yehu_server.scores.written.notated import MAX_BYTES, MAX_PARTS, Written

@@ -22,7 +22,7 @@ from aiohttp import WSMsgType, web
 
 from yehu_server.core.engine.telemetry import TELEMETRY_S
 from yehu_server.core.player.commands import EXPRESS, HOLD, KINDS, RAMP, WRITE
-from yehu_server.live import limits
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.page.players import CHANNELS, LOWEST, PagePlayers, permitted
 from yehu_server.live.page.shared_view import SharedView
 from yehu_server.live.web.frames import TEXT, frame_of, messages, write

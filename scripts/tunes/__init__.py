@@ -1,1 +1,0 @@
-"""The scores that `scripts/generate` writes by rule, and the tunes that measures play."""

@@ -1,7 +1,6 @@
 """An hour of playing: deadlines beside an idle stream, memory, and a replay of all of it.
 
     .venv/bin/python bench/endurance.py [--seconds N] [--save bench/results/NAME.json]
-    .venv/bin/python bench/endurance.py --page --seconds 60 --turns 3
     .venv/bin/python bench/endurance.py --parts 8
 
 `yehu-server serve` plays with --record and --capture. Another process sends dense OSC and MIDI, and
@@ -12,8 +11,6 @@ JACK server with the dummy driver, which has no real-time rights. Each bound is 
 code is 1 where one is missed.
 
 With --parts several players are on the stage, each with an input of its own and some of the OSC.
-With --page it plays in turns, each time anew: without a page, and with one that watches, plays and
-listens.
 """
 
 from __future__ import annotations
@@ -38,8 +35,7 @@ from urllib.request import urlopen
 import numpy as np
 import report
 import soundfile
-from load import CARD, SPAWN, helper, loaded, sound_card
-from visitors import visit
+from load import CARD, helper, loaded, sound_card
 
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.spec import InstrumentSpec
@@ -113,24 +109,6 @@ async def _page(session: Any, port: int, paths: list[str], counts: list[int], i:
             await page.send_json({"COMMAND": "LISTEN", "DATA": path})
         async for _message in page:
             counts[i] += 1
-
-
-@contextlib.contextmanager
-def visited(url: str | None) -> Iterator[None]:
-    """Where there is a page, have it watch, play and listen."""
-    if url is None:
-        yield
-        return
-    results = SPAWN.SimpleQueue()
-    visitor = SPAWN.Process(target=visit, args=(url, 1, None, results), daemon=True)
-    visitor.start()
-    try:
-        yield
-        if not visitor.is_alive():
-            sys.exit("the page did not visit to the end")
-    finally:
-        visitor.kill()
-        visitor.join()
 
 
 # ---------------------------------------------------------------- the instrument
@@ -221,25 +199,14 @@ def replayed_equal(folder: Path) -> tuple[int, int]:
 
 
 def play(
-    device: str,
-    blocksize: int,
-    seconds: float,
-    folder: Path,
-    *,
-    page: bool = False,
-    parts: int = 1,
+    device: str, blocksize: int, seconds: float, folder: Path, *, parts: int = 1
 ) -> dict[str, Any]:
     """Play under load, replay the take, and return all counts."""
     with helper(play_idle, device, blocksize) as idle:
         idle.recv()
         words = ["--record", str(folder / "take.wav"), "--capture", str(folder / "take.jsonl")]
-        words += ["--panel-port", "0"] if page else ["--no-panel"]
-        playing = Playing(device, blocksize, "--parts", str(parts), *words)
-        with (
-            helper(listen, playing.http) as pages,
-            visited(playing.said(r"the page at (http://\S+)") if page else None),
-            loaded(playing.osc, parts),
-        ):
+        playing = Playing(device, blocksize, "--parts", str(parts), "--no-panel", *words)
+        with helper(listen, playing.http) as pages, loaded(playing.osc, parts):
             time.sleep(SETTLED_S)
             idle.send(True)
             idle_before, before = idle.recv(), playing.status()
@@ -322,8 +289,6 @@ def judged(figures: dict[str, Any]) -> dict[str, dict[str, Any]]:
 def main() -> None:
     """Measure and print everything."""
     parser = report.options(__doc__)
-    parser.add_argument("--page", action="store_true", help="in turns without and with a page")
-    parser.add_argument("--turns", type=int, default=1, help="of each kind (default: 1)")
     parser.add_argument("--seconds", type=float, default=3600.0, help="default: 3600")
     parser.add_argument("--blocksize", type=int, default=64)
     parser.add_argument("--parts", type=int, default=1, help="number of players (default: 1)")
@@ -333,32 +298,16 @@ def main() -> None:
     if device == NULL:
         sys.exit("the silent clock has no deadlines")
     warm_up()  # compile before processes wait for each other
-    rows = []
-    with sound_card(arguments.audio_device, arguments.blocksize):
-        for page in (False, True)[: 1 + arguments.page] * arguments.turns:
-            with tempfile.TemporaryDirectory() as f:
-                figures = play(
-                    device,
-                    arguments.blocksize,
-                    arguments.seconds,
-                    Path(f),
-                    page=page,
-                    parts=arguments.parts,
-                )
-            rows.append({"page": page, **figures, "judged": judged(figures)})
-            print_figures(figures)
-            report.show(rows[-1]["judged"])
-    name = {False: "without a page", True: "with a page"}
-    report.show({f"{n}, {name[row['page']]}": counts(row) for n, row in enumerate(rows, 1)})
-    report.save(
-        arguments.save,
-        rows if len(rows) > 1 else rows[0],
-        device=arguments.audio_device or report.NO_CARD,
-        seconds=arguments.seconds,
-        blocksize=arguments.blocksize,
-        parts=arguments.parts,
-    )
-    if any(bound[""] == "FAIL" for row in rows for bound in row["judged"].values()):
+    how = {"blocksize": arguments.blocksize, "seconds": arguments.seconds, "parts": arguments.parts}
+    card = sound_card(arguments.audio_device, arguments.blocksize)
+    with card, tempfile.TemporaryDirectory() as folder:
+        figures = play(device, folder=Path(folder), **how)
+    figures["judged"] = judged(figures)
+    print_figures(figures)
+    report.show(figures["judged"])
+    report.show({"playing": counts(figures)})
+    report.save(arguments.save, figures, device=arguments.audio_device or report.NO_CARD, **how)
+    if any(bound[""] == "FAIL" for bound in figures["judged"].values()):
         sys.exit(1)
 
 

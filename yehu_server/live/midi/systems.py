@@ -17,7 +17,6 @@ from yehu_server.errors import DeviceError, ParameterError
 from yehu_server.system import NAME
 
 CLIENT = "yehu-server MIDI"
-APIS = ("alsa", "jack", "core", "windows")
 # In the order in which they are tried.
 OF_PLATFORM = {"linux": ("alsa", "jack"), "macos": ("core",), "windows": ("windows",)}
 

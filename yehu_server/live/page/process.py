@@ -27,7 +27,6 @@ from yehu_server.system.processes import LOWER, lower_priority
 from yehu_server.system.sockets import shared
 from yehu_server.util.processes import Child, Message, Parent
 
-NICE = 5  # after the processes that play
 SOCKET, SOUND = "/socket", "/sound"
 PREPARING, READY, NONE = "preparing", "ready", "none"
 

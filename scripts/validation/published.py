@@ -75,8 +75,7 @@ def measure(folder: Path) -> dict[str, Any]:
         "changes": rows,
         "signals": {each: off_by_gain(theirs - plain[each]) for each in SIGNALS},
         "sawtooth": size(beside_common_filter(theirs - sawtooth)),
-        "second": (theirs - plain["pressure"])[:, 1].tolist(),
-        "second_by_common": beside_common_filter(theirs - plain["bridge_force"])[:, 1].tolist(),
+        "filtered": (theirs - plain["bridge_force"]).tolist(),  # what their filter does
     }
 
 

@@ -1,6 +1,7 @@
 """Measure what both pages validation.md state, and write their tables and figures.
 
     .venv/bin/python scripts/validate.py measure   # half an hour on two cores
+    .venv/bin/python scripts/validate.py published FOLDER   # of the authors' sounds
     .venv/bin/python scripts/validate.py write
 
 `measure` takes subjects as arguments, to measure only those; the others stay as they were.
@@ -14,7 +15,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from validation import convergence, energy, held_out, ideal, laws, scheme, two_directions
+from validation import (
+    convergence,
+    energy,
+    held_out,
+    ideal,
+    laws,
+    monochord,
+    published,
+    scheme,
+    two_directions,
+)
 from validation.draw import draw
 from validation.tables import PAGES, page
 
@@ -47,6 +58,7 @@ SUBJECTS: dict[str, Callable[[], Any]] = {
     "held_out": held_out.measure,
     "scheme": scheme.measure,
     "two_directions": two_directions.measure,
+    "monochord": monochord.measure,
 }
 
 
@@ -56,15 +68,22 @@ def results() -> dict[str, Any]:
     return found
 
 
+def keep(name: str, found: Any) -> None:
+    """Put what was measured in place of what was known."""
+    RESULTS.write_text(json.dumps(results() | {name: found}, indent=1) + "\n", "utf-8")
+    print(name, "measured", flush=True)
+
+
 def main(words: list[str]) -> None:
-    if not words or words[0] not in ("measure", "write"):
-        print(__doc__)
-        return
-    if words[0] == "measure":
+    if words[:1] == ["measure"]:
         for name in words[1:] or SUBJECTS:
-            found = SUBJECTS[name]()
-            RESULTS.write_text(json.dumps(results() | {name: found}, indent=1) + "\n", "utf-8")
-            print(name, "measured", flush=True)
+            keep(name, SUBJECTS[name]())
+        return
+    if words[:1] == ["published"] and len(words) == 2:
+        keep("published", published.measure(Path(words[1])))
+        return
+    if words != ["write"]:
+        print(__doc__)
         return
     draw(results())
     for each in PAGES:

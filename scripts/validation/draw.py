@@ -13,8 +13,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from pictures.saving import ROOT, save
 
-from validation import ideal, laws
+from validation import ideal, laws, monochord, published
 from validation.tables import KINDS
+from yehu_server import body
 
 FIGURES = ROOT / "docs" / "figures"
 BETA = 0.117
@@ -25,6 +26,7 @@ def draw(found: Mapping[str, Any]) -> None:
     save(ideal_string(found["ideal"]), FIGURES / "validation_ideal.png", dpi=80)
     save(convergence(found["convergence"]), FIGURES / "validation_convergence.png", dpi=80)
     save(friction_laws(), FIGURES / "validation_laws.png", dpi=80)
+    save(measured(found), FIGURES / "validation_measured.png", dpi=80)
 
 
 def ideal_string(found: Mapping[str, Any]) -> Any:
@@ -113,3 +115,38 @@ def friction_laws() -> Any:
     panels[0, 0].set_ylabel("string on hair, m/s")
     panels[1, 0].set_ylabel("friction over bow force")
     return figure
+
+
+def measured(found: Mapping[str, Any]) -> Any:
+    """The filter of the published scale, by notes, with ours; Guettler's wedge."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12.0, 4.4), layout="constrained")
+    filtered = np.array(found["published"]["filtered"])
+    numbers = np.arange(1, published.HARMONICS + 1)
+    hertz = np.outer([hertz for _, hertz, _ in published.NOTES], numbers)
+    own = 20.0 * np.log10(np.abs(body.load().radiation(hertz.ravel()))).reshape(hertz.shape)
+    gain = np.median(filtered - own)
+    for note, (place, levels) in enumerate(zip(hertz, filtered - gain, strict=True)):
+        name = "published, each note" if note == 0 else None
+        left.plot(place, levels, "o", color="C0", alpha=0.7, label=name)
+    along = np.geomspace(300.0, 7000.0, 600)
+    left.plot(along, 20.0 * np.log10(np.abs(body.load().radiation(along))), "k", label="here")
+    left.set(xscale="log", xlabel="Hz", ylabel="dB", title="From bridge force to sound")
+    ticks = [300, 500, 1000, 2000, 5000]
+    left.set_xticks(ticks, [str(tick) for tick in ticks])
+    left.minorticks_off()
+    left.legend()
+    for name, each in monochord.MEASURED.items():
+        label = "measured, four strings" if name == "A" else None
+        edge(right, each, color="C0", linewidth=2.5 if name == "A" else 1.0, label=label)
+    for name, style in (("one point", "k-"), ("torsion", "k--"), ("no bristles", "k:")):
+        edge(right, monochord.Wedge(**found["monochord"][name]["wedge"]), style, label=name)
+    right.set(ylim=(0.0, 4.2), xlabel="acceleration, m/s²", ylabel="N")
+    right.set_title("Least force to begin within 20 periods")
+    right.legend()
+    return figure
+
+
+def edge(axes: Any, wedge: monochord.Wedge, *style: Any, **more: Any) -> None:
+    """Draw the edge of a wedge."""
+    ends = np.array([monochord.ACCELERATIONS[0], monochord.ACCELERATIONS[-1]])
+    axes.plot(ends, wedge.at_zero + wedge.slope * ends, *style, **more)

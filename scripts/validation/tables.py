@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from validation import monochord
 from validation.ideal import exponent
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,6 +38,8 @@ def page(text: str, found: Mapping[str, Any]) -> str:
         "scheme": scheme(found["scheme"]),
         "shares": shares(found["two_directions"]["shares"]),
         "forces": forces(found["two_directions"]["forces"]),
+        "published": published(found["published"]),
+        "monochord": monochord_strokes(found["monochord"]),
     }
     for name, rows in made.items():
         pattern = re.compile(rf"(<!-- (?:table|measured) {name} -->\n).*?(?=\1)", re.DOTALL)
@@ -275,3 +278,50 @@ def forces(found: Mapping[str, Any]) -> list[str]:
 def _paired_error(one: Any, other: Any) -> float:
     """The standard error of the difference of two shares of the same strokes."""
     return float((one.astype(float) - other).std(ddof=1) / np.sqrt(len(one)))
+
+
+def published(found: Mapping[str, Any]) -> list[str]:
+    """How far the published scale is, by what is changed here."""
+    rows = [
+        [
+            row["changed"],
+            f"{row['r']:.2f}",
+            f"{row['own']:.1f}",
+            f"{row['common']:.1f}",
+            f"{row['common_median']:.1f}",
+        ]
+        for row in found["changes"]
+    ]
+    saw = found["sawtooth"]
+    rows.append(["a sawtooth, no model", "", "", f"{saw['rms']:.1f}", f"{saw['median']:.1f}"])
+    head = ["changed", "r of levels", "rms by our filter, dB", "rms by a common filter"]
+    return table([*head, "its median"], rows)
+
+
+def monochord_strokes(found: Mapping[str, Any]) -> list[str]:
+    """Guettler's wedge, and Helmholtz motion at beta = 0.1, as measured and here."""
+
+    def wedge(each: monochord.Wedge) -> list[str]:
+        needed = [each.at_zero + each.slope * acceleration for acceleration in (1.0, 2.0)]
+        line = f"{each.slope:.2f} a + {each.at_zero:.2f}"
+        return [line, *(f"{force:.1f}" for force in needed), f"{each.share:.0%}"]
+
+    def ends(row: str) -> str:
+        forces = monochord.SWEPT[[mark == "#" for mark in row]]
+        if not len(forces):
+            return "none"
+        top = f"over {forces[-1]:.0f}" if row.endswith("#") else f"{forces[-1]:.1f}"
+        return f"{forces[0]:.2f} to {top}, {row.count('#') / len(row):.0%}"
+
+    least, greatest = monochord.MEASURED_LEAST, monochord.MEASURED_GREATEST
+    seen = [f"from {least[0]}", f"{least[1]} to {greatest}", f"from {least[2]}"]
+    rows = [
+        [f"measured, string {name}", *wedge(each), *(seen if name == "A" else [""] * 3)]
+        for name, each in monochord.MEASURED.items()
+    ]
+    rows += [
+        [name, *wedge(monochord.Wedge(**each["wedge"])), *map(ends, each["helmholtz"])]
+        for name, each in found.items()
+    ]
+    head = ["", "least force, N", "at 1 m/s²", "at 2 m/s²", "begin soon"]
+    return table([*head, *(f"Helmholtz at {speed:g} m/s" for speed in monochord.SPEEDS)], rows)

@@ -22,7 +22,7 @@ import numpy as np
 from yehu_lab.regimes.columns import HELMHOLTZ
 from yehu_lab.sweeps.running import sweep
 from yehu_lab.sweeps.study import study_of
-from yehu_server.core.physics.quantities import BODY_FILE
+from yehu_server.core.physics.default_quantities import BODY_FILE
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 

@@ -5,8 +5,8 @@
 
 docs/intonation.md says what each measure plays and counts; `grid` is the default.
 
-The last line is the share of all cases that are right. Under variation the mean pitch from 0.4 s on
-counts in grid, steady, quarters, strings and presets.
+The last line is the share of all cases that are right. Under variation the mean pitch of the first
+partials from 0.4 s on counts in grid, steady, quarters, strings and presets.
 """
 
 from __future__ import annotations

@@ -85,3 +85,16 @@ def test_a_vibrato_is_no_plain_pitch_and_no_drift():
     found = motion(moving(cents=30.0, hertz=5.5), RATE)
     assert np.isnan(found["pitch"])
     assert found["drift"] < 2.0
+
+
+def test_the_pitch_of_a_note_that_moves_is_that_of_its_partials():
+    from measures.intonation import NONE, mean_off_by
+
+    time = np.arange(round(0.4 * RATE)) / RATE
+    phase = 2.0 * np.pi * 440.0 * 2.0 ** (7.0 / 1200.0) * time
+    phase += 0.6 * np.sin(2.0 * np.pi * 2.5 * (time - 0.2))  # at most 6 cents more
+    moves = [1.0 + 0.6 * np.sin(2.0 * np.pi * 1.7 * time + k) for k in range(8)]
+    sound = sum(move * np.sin((k + 1) * phase) for k, move in enumerate(moves))
+    assert mean_off_by(sound, RATE, 0.0, 0.4, 69) == pytest.approx(9.5, abs=1.5)
+    assert mean_off_by(sound, RATE, 0.0, 0.4, 57) == pytest.approx(1207.0, abs=10.0)
+    assert mean_off_by(0.0 * sound, RATE, 0.0, 0.4, 69) == NONE

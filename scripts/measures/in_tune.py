@@ -2,12 +2,13 @@
 
 `grid` marks each note: `.` within 10 cents (open strings 12) from 0.1 s on; `a` in tune only
 after a longer attack; a number is the final error in cents; `O` a higher register, `U` a lower
-one, `?` no pitch. Under variation the mean from 0.4 s on counts.
+one, `?` no pitch. Under variation the mean of the partials from 0.4 s on counts.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,9 +20,11 @@ from measures.intonation import (
     MOMENTS_S,
     NONE,
     SETTLED_S,
+    SHARP_CENTS,
     bound,
     errors_of,
     judged,
+    mean_off_by,
     off_by,
     overtones_off_by,
     worst,
@@ -42,7 +45,6 @@ NOTE_S, SCALE_S = 0.8, 0.4
 OVERLAP_S = 0.01
 STEADY = MOMENTS_S.index(SETTLED_S)
 STEADY_S, END_S = 0.45, 0.75
-SHARP_CENTS = 50.0  # more is another register
 # Mod wheel (-1: untouched) and velocity.
 STEADY_CASES = [(w, v) for w in (-1, 0, 32, 64, 96, 127) for v in (40, 60, 80, 100, 127)]
 BODY = measured_body()
@@ -57,11 +59,16 @@ OTHERS: dict[str, dict[str, Any]] = {
 BOWED_S, PLUCKED_S = (0.3, 0.8), (0.05, 0.25)  # from and to, of notes of presets
 
 
+def _of(setup: Setup) -> Callable[..., float]:
+    """What finds the error of a note: under variation notes move."""
+    return mean_off_by if setup.variation > 0.0 else off_by
+
+
 def _mark(setup: Setup, note: int, wheel: int | None, velocity: int) -> str:
     """Play one note and return its mark in the grid."""
     sound, _ = held(setup, note, velocity, NOTE_S, wheel)
     if setup.variation > 0.0:
-        found = [off_by(sound, setup.rate, SETTLED_S, NOTE_S - SETTLED_S, note)]
+        found = [mean_off_by(sound, setup.rate, SETTLED_S, NOTE_S - SETTLED_S, note)]
         settled = found
     else:
         found = errors_of(sound, setup.rate, note, 0.0, NOTE_S)
@@ -137,7 +144,7 @@ def _sustained(
     """Return the error (cents) of a note in the steady state; and if its finger is at the nut."""
     place = None if wheel < 0 else wheel
     sound, take = held(setup, note, velocity, END_S, place, **how)
-    return off_by(sound, setup.rate, start_s, END_S - start_s, note), take.is_at_nut
+    return _of(setup)(sound, setup.rate, start_s, END_S - start_s, note), take.is_at_nut
 
 
 def steady(setup: Setup) -> list[Share]:
@@ -198,7 +205,7 @@ def _in_preset(setup: Setup, preset: str, note: int, velocity: int) -> tuple[flo
     start_s, end_s = PLUCKED_S if is_plucked else BOWED_S
     sound, _ = held(setup, note, velocity, end_s, preset=preset)
     from_s = start_s if is_plucked else setup.steady_s(start_s)
-    error = off_by(sound, setup.rate, from_s, end_s - from_s, note)
+    error = _of(setup)(sound, setup.rate, from_s, end_s - from_s, note)
     heard = sound[round(start_s * setup.rate) :]
     return error, a_weighted_db(heard, setup.rate), centroid_hz(heard, setup.rate)
 

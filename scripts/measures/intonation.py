@@ -23,10 +23,40 @@ MOMENTS_S = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)  # after the start of a no
 SETTLED_S = 0.4
 CLOSE_CENTS, FAIR_CENTS, OPEN_CENTS = 5.0, 10.0, 12.0
 NONE = 9999.0
+SHARP_CENTS = 50.0  # more is another register
+PARTIAL_S, DECIDING = 0.04, 5  # window of a partial; how many of the first
 REACH_CENTS, STEP_CENTS = 150.0, 1.0
 HIGHEST_HZ, MOST = 6000.0, 12  # of the harmonics that count
 MIN_OWN = 0.03  # share of the power that the harmonics must have
 MIN_ODD = 0.01  # share of theirs, of those that a higher register lacks
+
+
+def mean_off_by(sound: Sound, rate: float, start_s: float, seconds: float, pitch: float) -> float:
+    """Return the error (cents) of a note that moves, as `off_by` does.
+
+    Autocorrelation takes partials that rise and fall apart for a change of pitch. So where it finds
+    the note itself, the pitch is that of the first partials, which decide what pitch is heard
+    [Plomp]: from the slopes of their phases, as their sizes and numbers make each sure.
+    """
+    found = off_by(sound, rate, start_s, seconds, pitch)
+    if abs(found) > SHARP_CENTS:
+        return found
+    wanted = frequency_hz(pitch, 440.0)
+    part = sound[round(start_s * rate) : round((start_s + seconds) * rate)].astype(np.float64)
+    short = np.hanning(round(PARTIAL_S * rate))
+    time = np.arange(len(part)) / rate
+    total = weight = 0.0
+    for order in range(1, DECIDING + 1):
+        hertz = order * wanted
+        line = np.convolve(part * np.exp(-2j * np.pi * hertz * time), short, "valid")
+        sure = np.hanning(len(line)) * np.abs(line) ** 2
+        phase, at = np.unwrap(np.angle(line)), time[: len(line)]
+        at = at - np.average(at, weights=sure)
+        slope = (sure * at * phase).sum() / (sure * at * at).sum()
+        own = order * order * sure.sum()
+        total += own * cents(hertz + slope / (2.0 * np.pi), hertz)
+        weight += own
+    return float(total / weight)
 
 
 def off_by(sound: Sound, rate: float, start_s: float, seconds: float, pitch: float) -> float:

@@ -65,7 +65,7 @@ def test_a_slide_is_a_bend_of_the_note_before_that_ends_on_the_beat():
         times, bends = np.array(settings(played, BEND)).T
         assert bends[-1] == pytest.approx(leap)
         assert times[-1] + 0.008 == pytest.approx(HALVES)  # a bend takes 8 ms
-        assert 0.1 < times[-1] - times[0] < 0.32 * HALVES
+        assert 0.1 < times[-1] - times[0] < 0.42 * HALVES
         assert (np.diff(bends) * leap > 0.0).all()
         half = np.interp(0.5 * leap, np.sort(bends), times if leap > 0.0 else times[::-1])
         assert half == pytest.approx(np.mean([times[0], times[-1]]), abs=0.006)
@@ -111,7 +111,7 @@ def test_some_steps_slide_by_the_seed_and_more_of_the_wider_and_rising_ones():
     def slid_by(score: Score, seed: int) -> Score:
         return phrased(score, 0.5, PlayingOptions(seed=seed))
 
-    assert 0.06 < share(74, 76) < 0.16 < share(74, 77) < 0.3
+    assert 0.14 < share(74, 76) < 0.25 < share(74, 77) < 0.36
     again = [settings(slid_by(score_of(*[74, 76] * 9), 3), BEND) for _ in range(2)]
     assert again[0] == again[1]
     still = Setting("/playing/variation", 0.0)  # then no seed changes anything

@@ -32,7 +32,8 @@ MARKED_SPAN = 12  # between the softest and the loudest
 # for each semitone above the mean pitch of all, and at most.
 ARCH, DOWNBEAT, HALF_BAR, BEAT = 100.0, 12.0, 7.0, 4.0
 HIGHER, MAX_HIGHER = 6.0, 50.0
-BETWEEN_MARKS = 0.4  # so much of arches and accents, between the marks of a page: 3 dB by default
+BETWEEN_MARKS = 0.6  # so much of arches and accents, between the marks of a page
+WIDER = 1.0  # marks lie so much farther from their mean than a page writes them, at full phrasing
 # Notes in one bow: so many, each no longer, in steps no wider (semitones), nothing between them.
 MAX_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
 MIN_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow
@@ -64,11 +65,16 @@ def _phrased(score: Score, amount: float, playing: PlayingOptions) -> Score:
         }
         phrases = phrases_of(notes)
         mean_key = sum(note.key for note in notes) / len(notes)
+        mean_velocity = sum(note.velocity for note in notes) / len(notes)
         is_marked = is_shaped(notes, controllers)
         if score.is_written or not is_marked:
             depth = amount * (BETWEEN_MARKS if is_marked else 1.0)
             for phrase in phrases:
                 velocities.update(shaped(phrase, score, depth, mean_key, is_marked=is_marked))
+            if is_marked:
+                for note in notes:
+                    more = WIDER * amount * (note.velocity - mean_velocity)
+                    velocities[note.begins] = in_range(velocities[note.begins] + more)
         is_free = not is_bowed(notes, controllers)
         if amount >= MIN_FOR_BOWS and is_free:
             for phrase in phrases:
@@ -136,8 +142,13 @@ def shaped(
             higher = 0.0 if is_marked else HIGHER * (note.key - mean_key)
             higher = min(max(higher, -MAX_HIGHER), MAX_HIGHER)
             change = amount * (ARCH * (height - middle) + accent(note.beat, score) + higher)
-            velocities[note.begins] = min(max(round(note.velocity + change), 1), 127)
+            velocities[note.begins] = in_range(note.velocity + change)
     return velocities
+
+
+def in_range(velocity: float) -> int:
+    """The velocity of MIDI nearest to a number."""
+    return min(max(round(velocity), 1), 127)
 
 
 def accent(beat: float, score: Score) -> float:

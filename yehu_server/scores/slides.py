@@ -45,10 +45,10 @@ BEND_S = 1e-3 * find(BEND).smooth_ms  # after which the finger is at a point
 GAP_S = 0.045  # between two notes that a slide may join
 # Time of a slide at USUAL_PHRASING and above, and the most of its note. In recordings of violins 6
 # to 25 % of the steps last longer than 60 ms. By ear.
-SHORTEST_S, LONGEST_S, MOST = 0.15, 0.3, 0.32
+SHORTEST_S, LONGEST_S, MOST = 0.15, 0.3, 0.42
 MIN_STEP = 0.5  # semitones
 # The share of steps up that slide at USUAL_PHRASING, of narrow ones and of thirds; of steps down.
-NARROW, THIRD, THIRD_FROM, FALLING = 0.13, 0.26, 2.5, 0.6
+NARROW, THIRD, THIRD_FROM, FALLING = 0.22, 0.34, 2.5, 0.8
 
 
 def logistic(part: float) -> float:

@@ -40,6 +40,17 @@ def test_they_drift_as_far_as_they_are_said_to(drifts):
     assert np.abs(drifts.mean(axis=0)) == pytest.approx(np.zeros(5), abs=0.4 * wanted.max())
 
 
+def test_with_phrasing_the_pitch_moves_more_to_and_fro_within_a_second_or_two(drifts):
+    playing = Playing(variation=1.0, phrasing=0.5, bow_length=0.0)
+    playing.on(74)
+    (found,) = playing.play(LONG_S, "drift")
+    hz, more = power(found[:, CENTS_DRIFT])
+    _, usual = power(drifts[:, CENTS_DRIFT])
+    within = (hz > 1.2) & (hz < 2.0)
+    assert (more - usual)[within].sum() > 3.0 * (more - usual)[(hz > 0.1) & (hz < 0.8)].sum()
+    assert more[within].sum() > 5.0 * usual[within].sum()
+
+
 def test_the_drift_is_the_stronger_the_slower_and_the_tremor_is_about_ten_hertz(drifts):
     for which in (SPEED_DRIFT, FORCE_DRIFT, CENTS_DRIFT, PRESS_DRIFT):
         hz, found = power(drifts[:, which])

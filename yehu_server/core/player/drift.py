@@ -55,22 +55,25 @@ SMOOTHING_PER_HOP = 0.15  # of the way to the factors of the next cycle
 
 TIME_CONSTANTS_S = np.array((0.04, 0.16, 0.64, 2.56))  # of the sequences whose sum is the drift
 STAGES = 4
-# The pitch drifts more, at full variation and phrasing by so many cents of these sequences: they
-# move a note within, and leave its median in tune.
-MORE_CENTS, STAGES_WITHIN = 34.0, (1, 2)
+# The pitch drifts more, by so many cents at full variation and phrasing, to and fro in some 0.6
+# s: so a note moves within, and its mean is in tune.
+MORE_CENTS, SLOW_HZ, SLOW_WIDTH_HZ = 30.0, 1.6, 0.8
 POLES = elementwise(exp, -HOP_S / TIME_CONSTANTS_S)
 # Uniform numbers in -1..1 have a variance of 1/3; the sums have one of 1.
 NOISE_GAINS = np.sqrt(3.0 * (1.0 - POLES**2) / STAGES)
 TREMOR_HZ, WIDTH_HZ = 10.0, 3.0
-TREMOR_RADIUS = exp(-math.pi * WIDTH_HZ * HOP_S)
-TREMOR_A_1 = 2.0 * TREMOR_RADIUS * cos(2.0 * math.pi * TREMOR_HZ * HOP_S)
-TREMOR_A_2 = TREMOR_RADIUS * TREMOR_RADIUS
-TREMOR_NOISE = math.sqrt(
-    3.0
-    * (1.0 - TREMOR_A_2)
-    * ((1.0 + TREMOR_A_2) * (1.0 + TREMOR_A_2) - TREMOR_A_1 * TREMOR_A_1)
-    / (1.0 + TREMOR_A_2)
-)
+
+
+def resonance(hz: float, width_hz: float) -> tuple[float, float, float]:
+    """Of a resonance of noise, of variance 1: factors on its last values, and on the noise."""
+    radius = exp(-math.pi * width_hz * HOP_S)
+    one, two = 2.0 * radius * cos(2.0 * math.pi * hz * HOP_S), radius * radius
+    left = (1.0 - two) * ((1.0 + two) * (1.0 + two) - one * one) / (1.0 + two)
+    return one, two, math.sqrt(3.0 * left)
+
+
+TREMOR_A_1, TREMOR_A_2, TREMOR_NOISE = resonance(TREMOR_HZ, WIDTH_HZ)
+SLOW_A_1, SLOW_A_2, SLOW_NOISE = resonance(SLOW_HZ, SLOW_WIDTH_HZ)
 HANDS = 2
 DECAY_PER_HOP, NEGLIGIBLE = (
     0.8,
@@ -83,6 +86,7 @@ DRIFT_STATE = np.dtype(
     [
         ("slow", np.float64, (DRIFT_COUNT, STAGES)),  # the sequences of each drift
         ("tremor", np.float64, (HANDS, 2)),  # of each hand, now and one hop ago
+        ("within", np.float64, 2),  # the pitch's motion within notes, as the tremor
         ("cents", np.float64, DETECTION_DELAY_HOPS + 1),  # of the finger, now and at the last hops
         ("phase", np.float64),  # of the vibrato, one hop ago (turns)
         (
@@ -113,6 +117,9 @@ def advance_drift(p: Any, c: Any) -> None:
         now, before = u.tremor[hand, 0], u.tremor[hand, 1]
         u.tremor[hand, 0] = TREMOR_A_1 * now - TREMOR_A_2 * before + TREMOR_NOISE * next_random(p)
         u.tremor[hand, 1] = now
+    now = u.within[0]
+    u.within[0] = SLOW_A_1 * now - SLOW_A_2 * u.within[1] + SLOW_NOISE * next_random(p)
+    u.within[1] = now
     for i in range(DRIFT_COUNT):
         for k in range(STAGES):
             u.slow[i, k] = POLES[k] * u.slow[i, k] + NOISE_GAINS[k] * next_random(p)
@@ -129,8 +136,7 @@ def advance_drift(p: Any, c: Any) -> None:
             before, contour = contours.before[i], contours.value[i]
         own = amount * (DRIFT[i] * drift + TREMOR[i] * u.tremor[HAND[i], 0])
         if i == CENTS_DRIFT:
-            within = u.slow[i, STAGES_WITHIN[0]] + u.slow[i, STAGES_WITHIN[1]]
-            own += amount * MORE_CENTS * p.value[PHRASING] * within
+            own += amount * MORE_CENTS * p.value[PHRASING] * u.within[0]
         if amount == 0.0 or p.sounding < 0 or not is_own:
             left = c.drift[i] - (before if is_own else 0.0)
             own = DECAY_PER_HOP * left if abs(left) > NEGLIGIBLE else 0.0

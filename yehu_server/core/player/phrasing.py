@@ -32,7 +32,7 @@ def begin_sequence(p: Any, seed: int) -> None:
     """Begin the sequence of a seed."""
     p.seed, p.random_count = seed, 0
     p.drift_state.slow[:], p.drift_state.tremor[:], p.drift_state.random_count = 0.0, 0.0, 0
-    p.drift_state.slow_deviate[:] = 0.0
+    p.drift_state.slow_deviate[:], p.drift_state.within[:] = 0.0, 0.0
     p.contours.random_count = p.sway.random_count = 0
 
 

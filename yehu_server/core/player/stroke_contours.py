@@ -5,8 +5,9 @@ the stroke begins to its peak and from there to how it ends, and a wandering bes
 segments follow each other as long as it lasts. Loud is fast, heavy and near to the bridge, as
 players coordinate them [Schoonderwaldt]; in the wandering force and place go their own ways. Where
 the length of a note is not known, the arch's second half is slow, and the release bends it to its
-end. A segment begins with the value and the slope that are there, so that nothing jumps. All of it
-scales with `/playing/phrasing`, and `/engine/seed` says which.
+end. A segment begins with the value and the slope that are there, so that nothing jumps, but for
+the arch of a new stroke, as the bow turns. All of it scales with `/playing/phrasing`, and
+`/engine/seed` says which.
 """
 
 from __future__ import annotations
@@ -53,9 +54,9 @@ from yehu_server.params.spec import TURNED_ON
 # notes came into the range of recordings by such curves (scripts/liveliness.py).
 QUANTITIES = 3  # in the order of the drifts: speed, force, place
 # Factors less 1 at the beginning, the peak and the end of a stroke.
-BEGINS = np.array((-0.2, 0.08, 0.05))
-PEAKS = np.array((0.12, 0.14, -0.08))
-ENDS = np.array((-0.26, -0.12, 0.06))
+BEGINS = np.array((-0.23, 0.08, 0.05))
+PEAKS = np.array((0.13, 0.14, -0.08))
+ENDS = np.array((-0.14, -0.12, 0.06))  # not slower: the bow that turns adds to the gap
 UNEVEN, SMALLEST, LARGEST = 0.25, 0.5, 1.3  # standard deviation of an arch's size; bounds
 # Where the peak is, as a share of the stroke: of a down-bow, of an up-bow, and how much sooner in
 # the hardest note; its standard deviation; how much later force and place have theirs.
@@ -145,7 +146,7 @@ def has_contours(p: Any) -> bool:
 
 @compiled_exactly
 def begin_contours(p: Any, c: Any, is_slur: bool) -> None:
-    """Begin the curves of a note: from where they are, or anew where the bow is at rest."""
+    """Begin the curves of a note: anew in a new stroke, else from where they are."""
     k = p.contours
     since = (c.frame - k.began) / p.rate if p.began >= 0 else WHOLE_S  # the pace of what is played
     k.began, k.pace_s = c.frame, since
@@ -171,7 +172,7 @@ def begin_contours(p: Any, c: Any, is_slur: bool) -> None:
     place = DOWN_PEAK if p.direction > 0.0 else UP_PEAK
     place += UNEVEN_PEAK * contour_deviate(p) - harder
     for i in range(QUANTITIES):
-        if at_rest:
+        if at_rest or not is_slur:  # where the bow turns, nothing jumps
             k.arch[i].now, k.arch[i].rate = k.amount * BEGINS[i], 0.0
         peak = min(max(place + LATER[i], 0.12), 0.8)
         peak_s = peak * k.length_s if k.length_s > 0.0 else OPEN_PEAK_S * (0.5 + peak)

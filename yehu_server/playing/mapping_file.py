@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.midi.tables import MAX_BINDS
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import MappingError, ParameterError
@@ -184,6 +185,7 @@ def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
         invert=table.read("invert", flag, False),
         smoothing_ms=table.read("smoothing", number, 0.0, 0.0, LONGEST_SMOOTHING_MS, "ms"),
         channels=table.read("channel", read_channels, ()),
+        part=table.read("part", whole, 0, 1, MAX_PARTS),
         is_soft=table.read("soft", flag, False),
         input_range=table.read("input", read_input_range, (0.0, 1.0)),
         is_exclusive=table.read("alone", flag, False),
@@ -215,8 +217,10 @@ def _conflicts(bind: Bind, entry: Mapping[str, Any]) -> list[tuple[str, str]]:
             found.append(("channel", "an OSC address has no channel"))
         if bind.is_global:
             found.append(("global", "an OSC address always is global"))
-    elif "input" in entry:
-        found.append(("input", "only OSC addresses have an input range"))
+    else:
+        for name, what in (("input", "an input range"), ("part", "a part")):
+            if name in entry:
+                found.append((name, f"only OSC addresses have {what}"))
     if bind.is_soft and (bind.source in sources.OF_ONE_NOTE or bind.is_by_range):
         what = "the bend by the bend range" if bind.is_by_range else bind.source
         found.append(("soft", f"{what} cannot wait for the target"))

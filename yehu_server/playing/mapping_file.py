@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.core.midi.tables import MAX_BINDS
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import MappingError, ParameterError
@@ -87,6 +86,7 @@ def _without_null(table: Mapping[str, Any]) -> dict[str, Any]:
 
 LONGEST_SMOOTHING_MS = 5000.0
 MAX_POINTS = 1024
+MAX_PARTS = 16  # engine.rig.MAX_PARTS, which takes a second to import
 
 
 def settable_param(address: str, instead: str) -> Param:

@@ -40,6 +40,13 @@ def test_the_room_has_a_name_and_is_of_all_parts(refused):
     assert "leave out --room" in refused("serve", "--room", "hall", "--dry")
 
 
+def test_a_scale_on_keys_in_a_row_names_the_keyboard_map(capsys):
+    served("--tuning", "chaozhou-seven-equal")
+    assert "--keyboard-map says which key" in capsys.readouterr().err
+    served("--tuning", "chaozhou-seven-equal", "--keyboard-map", "chaozhou-keys")
+    assert capsys.readouterr().err == ""
+
+
 def test_live_playing_begins_with_a_vibrato_unless_a_mapping_is_chosen():
     """Each mapping has its own way to a vibrato."""
 

@@ -91,7 +91,15 @@ def tuning_of(arguments: argparse.Namespace) -> Tuning:
 
     if arguments.keyboard_map is not None and arguments.tuning is None:
         raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
-    return read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL
+    if arguments.tuning is None:
+        return EQUAL
+    tuning = read_tuning(arguments.tuning, arguments.keyboard_map)
+    if tuning.is_in_a_row:
+        warn(
+            f"--tuning {arguments.tuning}: keys play its notes in a row from C4 on, whatever their "
+            "names: --keyboard-map says which key plays which note"
+        )
+    return tuning
 
 
 def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -35,9 +36,11 @@ def phrase() -> list[yehu.Note]:
     return [yehu.Note(name, at, length, velocity=80) for name, at, length in notes]
 
 
-def check(made: yehu.Rendering) -> None:
-    assert -23.0 < lufs(made.sound, made.sample_rate) < -18.0
+def check(made: yehu.Rendering) -> float:
+    loudness = lufs(made.sound, made.sample_rate)
+    assert -23.0 < loudness < -18.0
     assert true_peak_db(made.sound) <= -1.0
+    return loudness
 
 
 def test_a_sine_is_as_loud_as_the_standard_says():
@@ -51,7 +54,10 @@ def test_a_sine_is_as_loud_as_the_standard_says():
     "preset", [*PRESETS, *(pytest.param(name, marks=pytest.mark.slow) for name in OTHERS)]
 )
 def test_a_phrase_is_within_5_lu_of_loudness_with_each_preset(preset):
-    check(yehu.render(phrase(), preset=preset, phrasing=0.0))
+    loudness = check(yehu.render(phrase(), preset=preset, phrasing=0.0))
+    page = (EXAMPLES.parent / "presets" / "README.md").read_text(encoding="utf-8")
+    shown = re.search(rf"\| `{preset}` \|.*\| (-[\d.]+) LUFS \|", page)
+    assert shown is None or float(shown[1]) == pytest.approx(loudness, abs=0.2)
 
 
 @pytest.mark.slow

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import mido
+
+from yehu_server.core.engine.limiter import CEILING
 from yehu_server.playing.stringing import range_text
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.performance import PartPlayer, Performance
@@ -14,6 +19,10 @@ FATE = {
     RangePolicy.CLAMP: "played as the nearest note",
     RangePolicy.SKIP: "left out",
 }
+
+EXPRESSION, RESET = 11, 121  # controllers
+LEAST_EXPRESSION = 2  # of CC 11: below, the bow leaves the string
+NOTABLE_DB = 1.0  # of the limiter
 
 
 def counted(number: int, thing: str) -> str:
@@ -59,6 +68,9 @@ class Summary:
     percussion_notes: int  # of channel 10, not played
     unknown_programs: tuple[int, ...]  # 1 to 128
     parts: tuple[PartSummary, ...] = ()
+    limited_db: float = 0.0  # by how much the limiter lowered the highest peak
+    clipped: tuple[str, ...] = ()  # stems above full scale, in a format that ends there
+    unheard_channels: tuple[int, ...] = ()  # 1 to 16: whose CC 11 stays at 0
 
     def remarks(self, hint: str = "") -> list[str]:
         """What was not played as it is written; `hint` follows that of percussion."""
@@ -66,12 +78,17 @@ class Summary:
             counted(notes, "note") for notes in (self.percussion_notes, self.notes_out_of_range)
         )
         programs = ", ".join(map(str, self.unknown_programs))
+        channels, clipped = ", ".join(map(str, self.unheard_channels)), ", ".join(self.clipped)
         solves = counted(self.unconverged_solves, "friction solve")
         lost = counted(self.lost_states, "time")
         lines = {
             f"channel 10 is percussion: {percussion} not played{hint}": self.percussion_notes,
             f"{moved} outside {self.range}, {FATE[self.policy]}": self.notes_out_of_range,
             f"no preset for the programs {programs}: ignored": programs,
+            f"channel {channels}: CC 11 (expression) stays at 0: no note is heard": channels,
+            f"the limiter lowered the highest peak by {self.limited_db:.1f} dB; less gain keeps "
+            "it": self.limited_db >= NOTABLE_DB,
+            f"clipped: {clipped}; float samples, or less gain, keep it": clipped,
             f"{solves} did not converge": self.unconverged_solves,
             f"the state was lost and set to rest: {lost}": self.lost_states,
         }
@@ -79,9 +96,19 @@ class Summary:
 
 
 def summary_of(
-    performance: Performance, duration_s: float, elapsed_s: float, peak: float, rms: float
+    performance: Performance,
+    duration_s: float,
+    elapsed_s: float,
+    peak: float,
+    rms: float,
+    *,
+    factor: float = 1.0,
+    clipped: Sequence[str] = (),
 ) -> Summary:
-    """Sum up a performance that has been played."""
+    """Sum up a performance that has been played.
+
+    `factor`: by which `peak` was scaled after the limiter; `clipped`: as of `Summary`.
+    """
     players, instruments = performance.players, performance.ensemble.instruments
     parts = tuple(map(_part_summary, players))
     channels: Counter[int] = Counter()
@@ -105,7 +132,37 @@ def summary_of(
             sorted({each for one in players for each in one.player.unknown_programs})
         ),
         parts=parts,
+        limited_db=limited_db(peak / factor, players[0].player.value("/output/limiter")),
+        clipped=tuple(clipped),
+        unheard_channels=tuple(sorted({each for one in players for each in _unheard(one)})),
     )
+
+
+def limited_db(peak: float, limiter_db: float) -> float:
+    """By how much the limiter, which bends above a level, lowered a peak: the inverse of `limit`.
+
+    Beyond some 7 dB the ceiling does not tell.
+    """
+    soft = 10.0 ** (limiter_db / 20.0)
+    room = CEILING - soft
+    if peak <= soft or room <= 0.0:
+        return 0.0
+    share = min((peak - soft) / room, 1.0 - 1e-6)
+    return 20.0 * math.log10((soft + room * math.atanh(share)) / peak)
+
+
+def _unheard(one: PartPlayer) -> set[int]:
+    """The channels, from 1, with notes whose CC 11 lifts the bow from the first to the last."""
+    if not one.part.playing.mapping.of("cc 11"):
+        return set()
+    highest: dict[int, int] = {}
+    for message in (event.message for event in one.part.score.events):
+        if isinstance(message, mido.Message) and message.type == "control_change":
+            value = {EXPRESSION: message.value, RESET: 127}.get(message.control)
+            if value is not None:
+                highest[message.channel] = max(value, highest.get(message.channel, 0))
+    played = one.player.notes_by_channel
+    return {channel + 1 for channel in played if highest.get(channel, 127) < LEAST_EXPRESSION}
 
 
 def _part_summary(one: PartPlayer) -> PartSummary:

@@ -177,10 +177,11 @@ def test_a_peak_that_the_limiter_lowers_is_said(command, midi, tmp_path):
 
 
 def test_a_file_whose_expression_stays_at_0_is_said_to_be_silent(command, midi, tmp_path):
-    said = "channel 1: CC 11 (expression) stays at 0: no note is heard"
+    said = "channel 1: CC 7 or 11 stays at 0: no note is heard"
     tune, target = notes((0, 0.1, 70, 64)), ("-o", tmp_path / "a.wav", "--tail", 0)
     assert said in command("render", midi(cc(0.0, 11, 0), *tune), *target)[1]
     assert said not in command("render", midi(cc(0.0, 11, 0), *tune, cc(0.05, 11, 9)), *target)[1]
+    assert said in command("render", midi(cc(0.0, 7, 0), *tune), *target)[1]
     assert said not in command("render", midi(*tune), *target)[1]
 
 

@@ -20,9 +20,9 @@ FATE = {
     RangePolicy.SKIP: "left out",
 }
 
-EXPRESSION, RESET = 11, 121  # controllers
-LEAST_EXPRESSION = 2  # of CC 11: below, the bow leaves the string
-NOTABLE_DB = 1.0  # of the limiter
+VOLUME, EXPRESSION, RESET = 7, 11, 121  # controllers
+LEAST = 2  # of CC 7 and 11: below, the bow leaves the string, or nothing is heard
+NOTABLE_DB, MOST_TOLD_DB = 1.0, 7.0  # of the limiter
 
 
 def counted(number: int, thing: str) -> str:
@@ -70,23 +70,25 @@ class Summary:
     parts: tuple[PartSummary, ...] = ()
     limited_db: float = 0.0  # by how much the limiter lowered the highest peak
     clipped: tuple[str, ...] = ()  # stems above full scale, in a format that ends there
-    unheard_channels: tuple[int, ...] = ()  # 1 to 16: whose CC 11 stays at 0
+    unheard_channels: tuple[int, ...] = ()  # 1 to 16: whose CC 7 or 11 stays at 0
 
-    def remarks(self, hint: str = "") -> list[str]:
-        """What was not played as it is written; `hint` follows that of percussion."""
+    def remarks(self, drum_hint: str = "", moved_hint: str = "") -> list[str]:
+        """What was not played as it is written, and hints at what to do about some of it."""
         percussion, moved = (
             counted(notes, "note") for notes in (self.percussion_notes, self.notes_out_of_range)
         )
         programs = ", ".join(map(str, self.unknown_programs))
+        more = self.limited_db >= MOST_TOLD_DB
+        decibels = f"{MOST_TOLD_DB:g} dB or more" if more else f"{self.limited_db:.1f} dB"
         channels, clipped = ", ".join(map(str, self.unheard_channels)), ", ".join(self.clipped)
         solves = counted(self.unconverged_solves, "friction solve")
-        lost = counted(self.lost_states, "time")
+        lost, fate = counted(self.lost_states, "time"), f"{FATE[self.policy]}{moved_hint}"
         lines = {
-            f"channel 10 is percussion: {percussion} not played{hint}": self.percussion_notes,
-            f"{moved} outside {self.range}, {FATE[self.policy]}": self.notes_out_of_range,
+            f"channel 10 is percussion: {percussion} not played{drum_hint}": self.percussion_notes,
+            f"{moved} outside {self.range}, {fate}": self.notes_out_of_range,
             f"no preset for the programs {programs}: ignored": programs,
-            f"channel {channels}: CC 11 (expression) stays at 0: no note is heard": channels,
-            f"the limiter lowered the highest peak by {self.limited_db:.1f} dB; less gain keeps "
+            f"channel {channels}: CC 7 or 11 stays at 0: no note is heard": channels,
+            f"the limiter lowered the highest peak by {decibels}; less gain keeps "
             "it": self.limited_db >= NOTABLE_DB,
             f"clipped: {clipped}; float samples, or less gain, keep it": clipped,
             f"{solves} did not converge": self.unconverged_solves,
@@ -141,7 +143,7 @@ def summary_of(
 def limited_db(peak: float, limiter_db: float) -> float:
     """By how much the limiter, which bends above a level, lowered a peak: the inverse of `limit`.
 
-    Beyond some 7 dB the ceiling does not tell.
+    Beyond MOST_TOLD_DB the ceiling does not tell.
     """
     soft = 10.0 ** (limiter_db / 20.0)
     room = CEILING - soft
@@ -152,17 +154,23 @@ def limited_db(peak: float, limiter_db: float) -> float:
 
 
 def _unheard(one: PartPlayer) -> set[int]:
-    """The channels, from 1, with notes whose CC 11 lifts the bow from the first to the last."""
-    if not one.part.playing.mapping.of("cc 11"):
-        return set()
-    highest: dict[int, int] = {}
+    """The channels, from 1, with notes that CC 7 or 11 silences from the first to the last."""
+    moves = one.part.playing.mapping.of
+    highest: dict[int, dict[int, int]] = {
+        control: {} for control in (VOLUME, EXPRESSION) if moves(f"cc {control}")
+    }
     for message in (event.message for event in one.part.score.events):
         if isinstance(message, mido.Message) and message.type == "control_change":
-            value = {EXPRESSION: message.value, RESET: 127}.get(message.control)
-            if value is not None:
-                highest[message.channel] = max(value, highest.get(message.channel, 0))
-    played = one.player.notes_by_channel
-    return {channel + 1 for channel in played if highest.get(channel, 127) < LEAST_EXPRESSION}
+            if message.control in highest:
+                of_channel = highest[message.control]
+                of_channel[message.channel] = max(message.value, of_channel.get(message.channel, 0))
+            elif message.control == RESET and EXPRESSION in highest:
+                highest[EXPRESSION][message.channel] = 127
+    return {
+        channel + 1
+        for channel in one.player.notes_by_channel
+        if any(of_channel.get(channel, 127) < LEAST for of_channel in highest.values())
+    }
 
 
 def _part_summary(one: PartPlayer) -> PartSummary:

@@ -33,7 +33,7 @@ def add_sound(group: Any) -> None:
         --tail SECONDS: sound to keep after the last note, up to 600 (default: until it is 80 dB
             below full scale, at most 5 s)
         --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
-        --normalize: scale the result to a true peak of -1 dBFS
+        --normalize: scale the result to a true peak of -1 dBFS (with --stems, the loudest file)
         """,
         rate={"type": whole, "default": 44100},
         tail=number_within(0.0, 600.0, "s"),

@@ -63,7 +63,7 @@ def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
         '[[bind]]\nsource = "nrpn 2/44"\ntarget = "/playing/attack"\nspan = [200, 10]\n'
         "curve = [[0, 0], [1, 0.5]]\ninvert = true\nsmoothing = 50\nchannel = [3, 2]\nsoft = true\n"
         "global = true\nlearned = true\n"
-        '[[bind]]\nsource = "/f"\ntarget = "/playing/volume"\ninput = [0, 127]\n'
+        '[[bind]]\nsource = "/f"\ntarget = "/playing/volume"\ninput = [0, 127]\npart = 2\n'
     )
     table = mappings("show", path)[1]
     for part in ("nrpn 300", "10 ms", "table", "channel 2", "50 ms", "soft", "global", "/f"):
@@ -79,6 +79,7 @@ def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
         "invert": True,
         "smoothing": 50.0,
         "channel": [2, 3],
+        "part": None,
         "soft": True,
         "alone": False,
         "global": True,
@@ -86,7 +87,7 @@ def test_all_terms_of_a_bind_are_shown(mappings, tmp_path):
         "input": None,
         "replaces": None,
     }
-    assert second["input"] == [0.0, 127.0]
+    assert (second["input"], second["part"]) == ([0.0, 127.0], 2)
 
 
 def test_a_preset_converted_or_shown_as_json_is_the_same_again(subtests, mappings, tmp_path):

@@ -8,6 +8,7 @@ from yehu_server.cli.part_options import MAX
 from yehu_server.cli.serve_options import options_of
 from yehu_server.core.engine.rig import MAX_PARTS
 from yehu_server.live.midi.routes import Route
+from yehu_server.playing import mapping_file
 from yehu_server.playing.mapping import load, shipped_mappings
 from yehu_server.playing.stringing import notes_of
 from yehu_server.util.files import shipped_folder
@@ -18,7 +19,7 @@ def served(*words: str):
 
 
 def test_there_are_as_many_parts_as_a_stage_has_room_for():
-    assert MAX == MAX_PARTS
+    assert MAX == mapping_file.MAX_PARTS == MAX_PARTS
     assert len(served("--parts", "16").parts) == 16
 
 
@@ -28,6 +29,22 @@ def test_by_default_one_plays_in_a_room():
     assert options.has_room
     assert options.midi.routes == []
     assert not served("--dry").has_room
+
+
+def test_the_room_has_a_name_and_is_of_all_parts(refused):
+    words = ("--room", "hall", "--parts", "2", "--part-preset", "2=flautando")
+    first, second = (dict(part.playing.start) for part in served(*words).parts)
+    assert first["/room/size"] == second["/room/size"] == 25.0
+    assert second["/body/gain"] == 6.0
+    assert "chamber, courtyard" in refused("serve", "--room", "church")
+    assert "leave out --room" in refused("serve", "--room", "hall", "--dry")
+
+
+def test_a_scale_on_keys_in_a_row_names_the_keyboard_map(capsys):
+    served("--tuning", "chaozhou-seven-equal")
+    assert "--keyboard-map says which key" in capsys.readouterr().err
+    served("--tuning", "chaozhou-seven-equal", "--keyboard-map", "chaozhou-keys")
+    assert capsys.readouterr().err == ""
 
 
 def test_live_playing_begins_with_a_vibrato_unless_a_mapping_is_chosen():

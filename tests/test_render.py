@@ -18,9 +18,11 @@ from midi_files import midi_file, notes
 from pitch import cents, hertz, pitch_of
 from sound import rms
 
+from yehu_server.core.engine.limiter import limit
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
+from yehu_server.rendering.summary import limited_db
 from yehu_server.rendering.to_files import render
 from yehu_server.scores.score import Score, concatenate
 from yehu_server.scores.smf.reader import read_score
@@ -162,6 +164,25 @@ def test_normalize_puts_the_true_peak_at_minus_1_dbfs(play, phrase, subtype, gai
     assert 20.0 * math.log10(np.abs(between).max()) == pytest.approx(-1.0, abs=0.15)
     assert summary["peak"] == pytest.approx(np.abs(sound).max(), abs=STEP[subtype])
     assert summary["rms"] == pytest.approx(rms(sound), abs=STEP[subtype])
+
+
+def test_a_peak_that_the_limiter_lowers_is_said(command, midi, tmp_path):
+    assert limited_db(limit(1.5, 0.7), 20.0 * math.log10(0.7)) == pytest.approx(
+        20.0 * math.log10(1.5 / limit(1.5, 0.7)), abs=1e-6
+    )
+    assert limited_db(0.7, -3.0) == 0.0
+    words = ("render", midi(*notes((0, 0.1, 70, 110))), "-o", tmp_path / "a.wav", "--tail", 0)
+    assert "limiter lowered" not in command(*words)[1]
+    assert "limiter lowered the highest peak by" in command(*words, "--gain-db", 24)[1]
+
+
+def test_a_file_whose_expression_stays_at_0_is_said_to_be_silent(command, midi, tmp_path):
+    said = "channel 1: CC 7 or 11 stays at 0: no note is heard"
+    tune, target = notes((0, 0.1, 70, 64)), ("-o", tmp_path / "a.wav", "--tail", 0)
+    assert said in command("render", midi(cc(0.0, 11, 0), *tune), *target)[1]
+    assert said not in command("render", midi(cc(0.0, 11, 0), *tune, cc(0.05, 11, 9)), *target)[1]
+    assert said in command("render", midi(cc(0.0, 7, 0), *tune), *target)[1]
+    assert said not in command("render", midi(*tune), *target)[1]
 
 
 # ---------------------------------------------------------------- the tail

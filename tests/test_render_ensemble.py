@@ -22,6 +22,7 @@ from yehu_server.playing.stringing import notes_of
 from yehu_server.rendering import cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
+from yehu_server.rendering.to_files import write_normalized
 from yehu_server.scores.reading import ReadOptions, part_of, read_any
 from yehu_server.scores.score import Score
 from yehu_server.scores.smf.reader import read_score
@@ -107,6 +108,16 @@ def test_the_mix_is_the_sum_of_its_stems(play, trio, tmp_path, words):
         assert np.abs(mix).max() == pytest.approx(10.0 ** (-1.0 / 20.0), abs=0.01)
     names = [Path(stem).name for stem in summary["stems"]]
     assert names[1] == "02-channel-2.wav"
+
+
+def test_a_stem_that_is_louder_than_the_mix_is_not_clipped(tmp_path):
+    written = [[], []]
+    files = [SimpleNamespace(write=each.append) for each in written]
+    takes = [[np.full(64, 0.2, np.float32), np.full(64, 1.5, np.float32)]]
+    factor = write_normalized(takes, files, tmp_path)
+    mix, room = map(np.concatenate, written)
+    assert 0.75 < room.max() < 0.9
+    assert mix.max() == pytest.approx(0.2 * factor)
 
 
 def test_a_part_sounds_as_it_does_alone_with_its_seed(play, trio, tmp_path):

@@ -43,6 +43,15 @@ def test_a_score_is_shown_note_by_note(command, tune):
     assert lines[-1] == 'not understood: words "with a smile"'
 
 
+def test_a_dynamic_within_a_held_note_is_shown_at_that_note(command, tmp_path):
+    tune = tmp_path / "tune.jianpu"
+    tune.write_text("4/4\n5 \\f - - - | 7 - - \\pp -\n", encoding="utf-8")
+    lines = command("score", "show", tune)[1].splitlines()
+    marks = [line.split()[-4:] for line in lines if line.startswith("    ")]
+    assert marks[0][-1] == "[f]"
+    assert marks[1] == ["[pp]", "from", "quarter", "3"]
+
+
 def test_a_score_is_shown_as_json(command, tune):
     shown = json.loads(command("score", "show", tune, "--json")[1])
     assert shown["title"] == "A tune"

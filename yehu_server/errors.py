@@ -7,7 +7,7 @@ the command line can print the message and leave with exit code 2.
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 
 class YehuError(Exception):
@@ -58,15 +58,72 @@ class MeasurementError(YehuError):
     """A measurement of a body that cannot be read, or cannot be what it is said to be."""
 
 
+SHORTEST_BEGINNING = 3  # characters of an address that is compared with the begin of others
 LONGEST_WORD = 100  # characters compared to find a similar one, which takes time by their square
 
 
-def did_you_mean(word: object, known: Collection[str], least: float = 0.6) -> str:
-    """A hint at the known word that is most like one, if there is one that is as like as that."""
+# What other programs call options, commands and addresses, by what they are called here.
+_OTHER_WORDS = {
+    "--audio-device": "device output-device soundcard",
+    "--blocksize": "buffer buffer-size buffersize block-size period",
+    "--gain-db": "volume gain level",
+    "--output": "out outfile wav",
+    "--overwrite": "force",
+    "--part": "track voice",
+    "--range": "transpose",
+    "--rate": "sample-rate samplerate sr",
+    "--room": "reverb echo hall ambience",
+    "--subtype": "bits bit-depth bitdepth",
+    "--tuning": "scale scala temperament scl",
+    "--osc": "port",
+    "build": "plugin plug-in vst vst3 clap lv2",
+    "page": "web browser",
+    "score": "convert export",
+    "serve": "play live start run server midi osc",
+    "/room/level": "reverb wet mix",
+    "/panic": "allnotesoff all_notes_off alloff",
+    "/pitch": "freq frequency",
+    "/preset/load": "program",
+}
+
+
+def _synonyms(word: str) -> list[str]:
+    return [here for here, others in _OTHER_WORDS.items() if word.lower() in others.split()]
+
+
+def did_you_mean(word: object, known: Collection[str], least: float = 0.7) -> str:
+    """A hint at the known word that means the same, or is at least as like; empty without one."""
+    same = next((each for each in _synonyms(str(word).lstrip("-")) if each in known), None)
+    return _hint(same) if same else _most_like(str(word), {each: each for each in known}, least)
+
+
+def near_address(
+    address: str, known: Collection[str], least: float = 0.7, *, prefix: str = ""
+) -> str:
+    """The same of addresses: one that ends in its name, a group of them, or one that is like it."""
+    path = address.rstrip("/")
+    name = path.rpartition("/")[2]
+    groups = {group: f"{group}/..." for each in known if (group := each.rpartition("/")[0])}
+    groups.pop(prefix, None)
+    ends = [f"/{path.removeprefix(prefix).lstrip('/')}", *_synonyms(name)]
+    found = [each for end in ends for each in known if end[0] == "/" and each.endswith(end)]
+    found += [groups[path]] if path in groups else []
+    if len(name) >= SHORTEST_BEGINNING:
+        found += sorted((each for each in known if each.startswith(path)), key=len)
+    shown = groups | {each: each for each in known}
+    return _hint(found[0]) if found else _most_like(path, shown, least)
+
+
+def _most_like(word: str, shown: Mapping[str, str], least: float) -> str:
     import difflib  # takes some milliseconds
 
-    found = difflib.get_close_matches(str(word)[:LONGEST_WORD], known, n=1, cutoff=least)
-    return f"; did you mean {found[0]}?" if found else ""
+    bare = {each.lstrip("-"): text for each, text in shown.items()}
+    found = difflib.get_close_matches(word[:LONGEST_WORD].lstrip("-"), bare, n=1, cutoff=least)
+    return _hint(bare[found[0]]) if found else ""
+
+
+def _hint(word: str) -> str:
+    return f"; did you mean {word}?"
 
 
 FIRST, LAST = 600, 400  # characters kept of a long line; the reason may be at either end

@@ -63,11 +63,11 @@ def articulations() -> str:
     """The table of articulations, with the keys of the mapping that has key switches."""
     first = load("keyboard-articulations").key_switches or 0
     return table(
-        "number, key, name, 中文, what both hands do",
+        "number, key (MIDI), name, 中文, what both hands do",
         (
             [
                 str(number),
-                name_of(first + number),
+                f"{name_of(first + number)} ({first + number})",
                 f"`{row.name}`",
                 row.chinese,
                 row.about,

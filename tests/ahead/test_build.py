@@ -78,11 +78,12 @@ def test_a_build_is_the_same_to_the_byte_also_from_an_empty_cache(tmp_path, monk
 def test_build_tables_writes_what_a_style_has(tmp_path, command):
     output = tmp_path / "wind.tables"
     options = ["--mapping", "wind", "--tuning", "chaozhou-seven-equal", "--a4", "430"]
+    options += ["--keyboard-map", "chaozhou-keys"]
     options += ["--range", "skip", "--preset", "sul-tasto", "--programs"]
     assert command("build", "tables", *options, "-o", output) == (0, f"{output}\n", "")
     playing = PlayingOptions(
         mapping=load("wind"),
-        tuning=read_tuning(Path("chaozhou-seven-equal")),
+        tuning=read_tuning(Path("chaozhou-seven-equal"), Path("chaozhou-keys")),
         a4=430.0,
         policy=RangePolicy.SKIP,
         start=tuple(Presets().load("sul-tasto").values.items()),

@@ -8,6 +8,7 @@ from wire import f32
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.live.osc import clients, handler
+from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
@@ -220,6 +221,22 @@ def test_what_a_part_learns_all_parts_of_its_mapping_have(still, players, monkey
     assert "one for all parts" in error
     (error,) = errors(still.ask("/part/2/learn", "/yehu/part/3/playing/volume"))
     assert "another part" in error
+
+
+def test_an_address_that_a_part_has_learned_moves_that_part(still, players, wire, config_home):
+    del config_home
+    still.ask("/part/2/learn", VOLUME)
+    for place in (0.0, 0.5, 0.25):
+        still.take(wire.message("/fader1", place))
+    still.pass_time(0.01)
+    (bind,) = players[1].mapping.of("/fader1")
+    assert bind.part == 2
+    assert values(players) == [1.0, 0.25, 1.0]
+    plain = [call for call in more_calls(players) if call.address == "/fader1"]
+    assert [call.doc.split()[1] for call in plain] == [f"/yehu/part/2{VOLUME},"]
+    still.take(wire.message("/yehu/part/3/fader1", 0.5))
+    still.pass_time(0.01)
+    assert values(players) == [1.0, 0.25, 0.5]
 
 
 def test_a_preset_is_loaded_by_a_part_and_leaves_what_all_share(still, players, monkeypatch):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
@@ -77,10 +78,14 @@ def test_the_engine_holds_its_rows_in_the_order_of_the_table():
         ("/finger/2/positon", "/finger/2/position"),
         ("bow_position", "/playing/bow_position"),
         ("/bow_position", "/playing/bow_position"),
+        ("/plaing", "/playing/..."),
+        ("/playing/artic", "/playing/articulation"),
+        ("reverb", "/room/level"),
+        ("speed", "/playing/speed"),
     ],
 )
 def test_a_near_miss_is_answered_with_what_was_meant(wrong, meant):
-    with pytest.raises(ParameterError, match=rf"'{wrong}'.*did you mean {meant}\?"):
+    with pytest.raises(ParameterError, match=rf"'{wrong}'.*did you mean {re.escape(meant)}\?"):
         find(wrong)
 
 
@@ -103,6 +108,19 @@ def test_a_setting_that_makes_no_sense_is_refused(subtests):
             pytest.raises(ParameterError, match=wrong),
         ):
             assignment(text)
+
+
+def test_a_value_of_a_list_is_set_by_its_name_too(subtests):
+    for text, value in [
+        ("/playing/articulation=trill", ("/playing/articulation", 20.0)),
+        ("articulation=20", ("/playing/articulation", 20.0)),
+        ("/playing/string=outer", ("/playing/string", 2.0)),
+        ("/playing/direction=up", ("/playing/direction", -1.0)),
+    ]:
+        with subtests.test(text=text):
+            assert assignment(text) == value
+    with pytest.raises(ParameterError, match="did you mean trill"):
+        assignment("/playing/articulation=tril")
 
 
 # ---------------------------------------------------------------- curves

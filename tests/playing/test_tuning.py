@@ -74,6 +74,13 @@ def test_a_scale_repeats_at_its_last_note_octave_or_not(read):
     assert tuning.pitch(46, 440.0) == pytest.approx(60 - tritave + 12 * math.log2(25 / 27))
 
 
+def test_a_scale_of_other_than_twelve_notes_lies_on_keys_in_a_row_without_a_map(read):
+    assert read(scl(*MAJOR)).is_in_a_row
+    assert not read(scl(*TWELVE)).is_in_a_row
+    assert not EQUAL.is_in_a_row
+    assert not read(scl(*MAJOR), kbm(*WHITE, octave=7)).is_in_a_row
+
+
 def test_between_keys_the_pitch_is_between_theirs(read):
     tuning = read(scl(*MAJOR))
     tone, third = 12 * math.log2(9 / 8), 12 * math.log2(5 / 4)

@@ -249,15 +249,18 @@ def _played(
         pitches.append(np.nan if asked is None else asked)
     empty = np.zeros((0,) if options.is_mono else (0, 2), np.float32)
     sound = np.concatenate(blocks) if blocks else empty
+    factor = 1.0
     if options.normalize:
         meter = TruePeak()
         meter.add(sound)
         if (true_peak := meter.finish()) > 0.0:
-            sound *= np.float32(NORMALIZED_PEAK / true_peak)
+            factor = NORMALIZED_PEAK / true_peak
+            sound *= np.float32(factor)
     peak = float(np.abs(sound).max(initial=0.0))
     rms = float(np.sqrt(np.mean(np.square(sound, dtype=np.float64)))) if sound.size else 0.0
     elapsed_s = time.perf_counter() - start
-    summary = summary_of(performance, frames / options.rate, elapsed_s, peak, rms)
+    length_s = frames / options.rate
+    summary = summary_of(performance, length_s, elapsed_s, peak, rms, factor=factor)
     return sound, (np.array(times), np.array(pitches)), summary
 
 

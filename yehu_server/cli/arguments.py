@@ -16,6 +16,7 @@ from yehu_server.cli.converters import target
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import did_you_mean, one_line
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
+from yehu_server.params.table import BY_ADDRESS
 from yehu_server.util.files import check_free, check_target, replace_any, shipped_folder
 from yehu_server.util.hints import command_name
 
@@ -126,9 +127,16 @@ class Parser(argparse.ArgumentParser):
         if known[1]:
             word = known[1][0].partition("=")[0]
             is_option = word.startswith("-")
-            near = did_you_mean(word, self.options) if is_option else ""
+            near = self._near(word)
             self.error(f"no option {word}{near}" if is_option else f"{word}: one argument too many")
         return known
+
+    def _near(self, option: str) -> str:
+        """A hint at an option, or at the parameter of that name where one can be set."""
+        name = f"/playing/{option.lstrip('-').replace('-', '_')}"
+        if "--set" in self.options and name in BY_ADDRESS:
+            return f"; did you mean --set {name}=VALUE?"
+        return did_you_mean(option, self.options)
 
     @property
     def options(self) -> dict[str, argparse.Action]:

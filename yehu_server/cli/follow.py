@@ -27,13 +27,13 @@ from yehu_server.cli.arguments import (
     picture_output,
 )
 from yehu_server.cli.converters import hours, number_within, target
-from yehu_server.cli.playing_options import add_playing
+from yehu_server.cli.playing_options import add_playing, playing_options_of
 from yehu_server.cli.sound_options import (
     PLOTTED_BLOCK,
-    add_room,
     add_sound,
+    add_space,
     check_sound,
-    playing_in_room,
+    in_room,
     sound_options_of,
 )
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn, warn_of_lost
@@ -81,7 +81,7 @@ def add_to(commands: Any) -> None:
         subtype={"choices": tuple(SUBTYPES)},
     )
     add_sound(parser)
-    add_room(parser)
+    add_space(parser)
     add_instrument(parser)
     add_playing(parser)
     add_reporting(parser)
@@ -137,7 +137,7 @@ def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
 
     ending = arguments.output.suffix.lower()
     check_sound(arguments)
-    playing = playing_in_room(arguments)
+    playing = in_room(playing_options_of(arguments), arguments)
     if arguments.plot is not None and ending in (*MIDI, *CAPTURE):
         raise OutputError("--plot shows what is played: name a sound file with -o")
     outputs = {"-o": arguments.output, **picture_output(arguments)}

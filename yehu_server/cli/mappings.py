@@ -208,6 +208,7 @@ def _bind_fields(bind: Bind) -> dict[str, Any]:
         "invert": bind.invert,
         "smoothing": bind.smoothing_ms,
         "channel": bind.channels or None,
+        "part": bind.part or None,
         "soft": bind.is_soft,
         "alone": bind.is_exclusive,
         "global": bind.is_global,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import add_instrument, add_options
 from yehu_server.cli.converters import whole_within
 from yehu_server.cli.playing_options import mapping_of, playing_options_of
+from yehu_server.cli.sound_options import add_room, check_room, in_room
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.live.part_addresses import check_own, group_of, no_part
@@ -43,7 +44,6 @@ def add_parts(group: Any) -> None:
             repeated
         --part-set N=ADDRESS=VALUE ...: hold a parameter of part N, such as 2=/room/pan=-0.5; may be
             repeated
-        --dry: no room, and the same sound on both sides
         """,
         parts={"type": whole_within(1, MAX, f"parts: a stage has 1 to {MAX}"), "default": 1},
         part=_numbered,
@@ -52,6 +52,7 @@ def add_parts(group: Any) -> None:
         part_preset=_numbered,
         part_set=_numbered,
     )
+    add_room(group)
 
 
 def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
@@ -64,7 +65,8 @@ def part_options(arguments: argparse.Namespace) -> list[PartOptions]:
             if not 1 <= number <= arguments.parts:
                 name = f"--{option.replace('_', '-')} {number}={text}"
                 raise ParameterError(f"{name}: {no_part(number, arguments.parts)}")
-    usual = playing_options_of(arguments, is_live=True)
+    check_room(arguments)
+    usual = in_room(playing_options_of(arguments, is_live=True), arguments)
     options = []
     for number in range(1, arguments.parts + 1):
         own = _own(arguments, number)
@@ -122,7 +124,7 @@ def _options_of(own: argparse.Namespace, number: int) -> PlayingOptions:
     shared = [address for address, _ in playing.start if find(address).is_shared]
     if shared and number > 1 and own.part_preset:
         warn(f"part {number}: {shared[0]} of its preset is one for all parts, and left out")
-    return playing
+    return in_room(playing, own)
 
 
 # ---------------------------------------------------------------- converters

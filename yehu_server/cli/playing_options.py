@@ -28,8 +28,8 @@ def add_playing(group: Any) -> None:
         """
         --practice FILE: bowing table, as yehu-server practise writes it (default:
             NAME.practice.json beside an instrument file NAME.toml, else the shipped one)
-        --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1; may
-            be repeated
+        --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1 or
+            articulation=trill; may be repeated
         --open-strings: when to play C5 (of a yehu) on the open outer string instead of stopping
             the inner one (default: always)
         --seed N: seed of the random variation of the player, 0 to 65535 (default: 0)
@@ -77,8 +77,8 @@ def add_tuning(group: Any) -> None:
         """
         --tuning FILE.scl: Scala scale, with C as its first note: a file, or the name of a shipped
             one (default: equal temperament)
-        --keyboard-map FILE.kbm: Scala keyboard map, which also fixes the pitch: a file, or the name
-            of a shipped one
+        --keyboard-map FILE.kbm: Scala keyboard map: which key plays which note of a scale of other
+            than twelve, and the pitch: a file, or the name of a shipped one
         """,
         tuning=Path,
         keyboard_map=Path,
@@ -91,7 +91,15 @@ def tuning_of(arguments: argparse.Namespace) -> Tuning:
 
     if arguments.keyboard_map is not None and arguments.tuning is None:
         raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
-    return read_tuning(arguments.tuning, arguments.keyboard_map) if arguments.tuning else EQUAL
+    if arguments.tuning is None:
+        return EQUAL
+    tuning = read_tuning(arguments.tuning, arguments.keyboard_map)
+    if tuning.is_in_a_row:
+        warn(
+            f"--tuning {arguments.tuning}: keys play its notes in a row from C4 on, whatever their "
+            "names: --keyboard-map says which key plays which note"
+        )
+    return tuning
 
 
 def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import check_output, picture_output
 from yehu_server.cli.ensemble_parts import Players, players_of
+from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.cli.sound_options import (
     PLOTTED_BLOCK,
     check_stage,
-    playing_in_room,
+    in_room,
     sound_options_of,
 )
 from yehu_server.cli.terminal import compile_all, progress_bar, warn
@@ -56,7 +57,7 @@ def rendered(
     from yehu_server.rendering.to_files import render
 
     check_stage(arguments)
-    playing = playing_in_room(arguments).shaping(PHRASING)
+    playing = in_room(playing_options_of(arguments), arguments).shaping(PHRASING)
     outputs = {} if arguments.output is PIPE else {"-o": arguments.output}
     outputs |= picture_output(arguments)
     check_distinct(outputs, [*arguments.midi, *playing.files])

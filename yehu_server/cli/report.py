@@ -16,6 +16,7 @@ from yehu_server.live.page.guests import LISTEN, OWN, PLAY, Guests
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import note_name
+from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.replay import Replayed
 from yehu_server.rendering.summary import PartSummary, Summary, counted
 from yehu_server.simulation.run import Simulation, faults_of
@@ -44,7 +45,9 @@ def render_report(target: Path, summary: Summary) -> str:
         lines += map(_part_line, summary.parts)
     else:
         lines.append(f"channels: {heard}" if heard else "no notes to play")
-    lines += summary.remarks("; --channel 10 plays them")
+    skips = summary.policy is RangePolicy.SKIP
+    moved_hint = "" if skips else " (--range skip leaves out key switches of another library)"
+    lines += summary.remarks("; --channel 10 plays them", moved_hint)
     if summary.friction_bound >= NOTABLE_BOUND:
         lines.append(
             "note: at this sample rate the bow sticks less reliably; a higher --rate is better"

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_options
 from yehu_server.cli.converters import number_within, positive, target, whole
-from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ def add_sound(group: Any) -> None:
         --tail SECONDS: sound to keep after the last note, up to 600 (default: until it is 80 dB
             below full scale, at most 5 s)
         --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
-        --normalize: scale the result to a true peak of -1 dBFS
+        --normalize: scale the result to a true peak of -1 dBFS (with --stems, the loudest file)
         """,
         rate={"type": whole, "default": 44100},
         tail=number_within(0.0, 600.0, "s"),
@@ -43,21 +42,26 @@ def add_sound(group: Any) -> None:
 
 
 def add_room(group: Any) -> None:
-    """Add the options of the room and the channels of the sound."""
+    """Add the options of the room; see `in_room`."""
     add_options(
         group,
         """
-        --dry: no room, and the same sound on both sides (default: a chamber)
-        --mono: write one channel, the mean of left and right
         --room NAME: the room: one of the presets of rooms, such as hall, or a file
+        --dry: no room, and the same sound on both sides (default: a chamber)
         """,
     )
+
+
+def add_space(group: Any) -> None:
+    """Add the options of the room and of the channels of a sound file."""
+    add_room(group)
+    add_options(group, "--mono: write one channel, the mean of left and right")
 
 
 def add_stage(parser: Any) -> None:
     """Add the options of a stage: room, channels, ensemble, stems."""
     group = parser.add_argument_group("the stage")
-    add_room(group)
+    add_space(group)
     add_options(
         group,
         """
@@ -86,10 +90,15 @@ def _ensemble_file(text: str) -> Path:
 
 
 def check_sound(arguments: argparse.Namespace) -> None:
-    """Refuse a rate that no instrument has, and a room without a room: raises ParameterError."""
+    """Refuse a rate that no instrument has, and as `check_room` does: raises ParameterError."""
     from yehu_server.core.physics.grid import check_rate
 
     check_rate(arguments.rate)
+    check_room(arguments)
+
+
+def check_room(arguments: argparse.Namespace) -> None:
+    """Refuse a room without a room: raises ParameterError."""
     if arguments.dry and arguments.room is not None:
         raise ParameterError("--dry means no room: leave out --room")
 
@@ -103,9 +112,8 @@ def check_stage(arguments: argparse.Namespace) -> None:
         raise ParameterError("--by track: the ensemble file names channels and tracks itself")
 
 
-def playing_in_room(arguments: argparse.Namespace) -> PlayingOptions:
-    """How to play, in the room that is asked for; raises YehuError where something is wrong."""
-    playing = playing_options_of(arguments)
+def in_room(playing: PlayingOptions, arguments: argparse.Namespace) -> PlayingOptions:
+    """How to play, in the room that is asked for; raises YehuError where there is none such."""
     if arguments.room is None:
         return playing
     room = room_of(arguments.room, playing.presets)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from yehu_server.errors import ParameterError, did_you_mean
-from yehu_server.params.articulations import LAST
+from yehu_server.errors import ParameterError, did_you_mean, near_address
+from yehu_server.params.articulations import LAST, NUMBER
 from yehu_server.params.spec import Curve, Param, Place
 
 PREFIX = "/yehu"  # before every address, in OSC and OSCQuery
@@ -216,6 +216,12 @@ TABLE: tuple[Param, ...] = (
 
 UNIT = "/unit"  # suffix of an address: the same parameter as 0 to 1
 
+# What values of a list are called.
+NAMES: Mapping[str, Mapping[str, float]] = {
+    "/playing/articulation": NUMBER,
+    "/playing/string": {"either": 0.0, "inner": 1.0, "outer": 2.0},
+    "/playing/direction": {"alternating": 0.0, "down": 1.0, "up": -1.0},
+}
 BY_ADDRESS = {param.address: param for param in TABLE}
 ENGINE: tuple[Param, ...] = tuple(param for param in TABLE if param.place is Place.ENGINE)
 SLOT = {param.address: slot for slot, param in enumerate(ENGINE)}
@@ -229,9 +235,9 @@ def find(address: str) -> Param:
     try:
         return BY_ADDRESS[address]
     except KeyError:
-        # An address that ends in this name comes before one that is merely similar.
-        near = [known for known in BY_ADDRESS if known.endswith(f"/{address.lstrip('/')}")]
-        hint = did_you_mean(near[0] if near else address, BY_ADDRESS, 0.4)
+        # Those that the player does not move come first.
+        known = sorted(BY_ADDRESS, key=lambda each: BY_ADDRESS[each].player_controlled)
+        hint = near_address(address, known, 0.5)
         raise ParameterError(f"unknown parameter {address!r}{hint}") from None
 
 
@@ -245,17 +251,22 @@ def read(values: Mapping[str, float], address: str) -> float:
 def assignment(text: str) -> tuple[str, float]:
     """Read ``ADDRESS=VALUE``.
 
+    A last part that one address alone has stands for it; a value may be one of its `NAMES`.
     Raises ParameterError where the text has another form, the address is unknown, or the value is
     out of range.
     """
     address, equals, value = text.partition("=")
     if not equals:
         raise ParameterError(f"{text!r}: expected ADDRESS=VALUE, such as /playing/bow_position=0.1")
-    param = find(address.strip())
+    ending = [known for known in BY_ADDRESS if known.endswith(f"/{address.strip().lstrip('/')}")]
+    param = find(ending[0] if len(ending) == 1 else address.strip())
+    names = NAMES.get(param.address, {})
     try:
-        number = float(value)
+        number = names[value] if value in names else float(value)
     except ValueError:
-        raise ParameterError(f"{param.address}: {value!r} is not a number") from None
+        what = f"neither a number nor one of {', '.join(names)}" if names else "not a number"
+        hint = did_you_mean(value, names)
+        raise ParameterError(f"{param.address}: {value!r} is {what}{hint}") from None
     if param.clamped(number) != number:
         raise ParameterError(f"{param.address}: {number:g} is not within {param.range_text}")
     return param.address, number

@@ -74,6 +74,8 @@ class Bind:
     is_soft: bool = False
     # The values that an OSC address sends at its two ends.
     input_range: tuple[float, float] = (0.0, 1.0)
+    # The part, from 1, that an OSC address moves where it is sent without one; 0: the first of all.
+    part: int = 0
     # Whether it replaces all binds of the base that move the same target; ``alone`` in files.
     is_exclusive: bool = False
     # Whether it moves every note, on whichever port and channel the source is moved; see ``scope``.
@@ -110,6 +112,7 @@ class Bind:
         lo, hi = self.input_range
         terms = {
             f"sends {lo:g} to {hi:g}": (lo, hi) != (0.0, 1.0),
+            f"part {self.part}": self.part,
             f"channel {', '.join(map(str, self.channels))}": self.channels,
             f"within {self.smoothing_ms:g} ms": self.smoothing_ms,
             "soft": self.is_soft,

@@ -44,6 +44,7 @@ class LearnedSource:
 
     source: str
     input_range: tuple[float, float] = (0.0, 1.0)
+    part: int = 0  # of an address: as of `Bind`
 
 
 @dataclass
@@ -180,6 +181,7 @@ def learn(
         param.address,
         curve=param.curve,
         input_range=found.input_range,
+        part=found.part,
         is_soft=soft and found.source not in OF_ONE_NOTE,
         is_exclusive=only,
         is_global=not (found.source in OF_ONE_NOTE or is_address(found.source)),

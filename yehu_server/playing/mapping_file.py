@@ -86,6 +86,7 @@ def _without_null(table: Mapping[str, Any]) -> dict[str, Any]:
 
 LONGEST_SMOOTHING_MS = 5000.0
 MAX_POINTS = 1024
+MAX_PARTS = 16  # engine.rig.MAX_PARTS, which takes a second to import
 
 
 def settable_param(address: str, instead: str) -> Param:
@@ -184,6 +185,7 @@ def _bind(table: Fields, *, may_replace: bool = True) -> Bind | None:
         invert=table.read("invert", flag, False),
         smoothing_ms=table.read("smoothing", number, 0.0, 0.0, LONGEST_SMOOTHING_MS, "ms"),
         channels=table.read("channel", read_channels, ()),
+        part=table.read("part", whole, 0, 1, MAX_PARTS),
         is_soft=table.read("soft", flag, False),
         input_range=table.read("input", read_input_range, (0.0, 1.0)),
         is_exclusive=table.read("alone", flag, False),
@@ -215,8 +217,10 @@ def _conflicts(bind: Bind, entry: Mapping[str, Any]) -> list[tuple[str, str]]:
             found.append(("channel", "an OSC address has no channel"))
         if bind.is_global:
             found.append(("global", "an OSC address always is global"))
-    elif "input" in entry:
-        found.append(("input", "only OSC addresses have an input range"))
+    else:
+        for name, what in (("input", "an input range"), ("part", "a part")):
+            if name in entry:
+                found.append((name, f"only OSC addresses have {what}"))
     if bind.is_soft and (bind.source in sources.OF_ONE_NOTE or bind.is_by_range):
         what = "the bend by the bend range" if bind.is_by_range else bind.source
         found.append(("soft", f"{what} cannot wait for the target"))

@@ -29,6 +29,7 @@ def entries_of(bind: Bind) -> dict[str, Any]:
         "invert": bind.invert or None,
         "smoothing": _number(bind.smoothing_ms) or None,
         "channel": _channels(bind),
+        "part": bind.part or None,
         "soft": bind.is_soft or None,
         "alone": bind.is_exclusive or None,
         "global": bind.is_global or None,

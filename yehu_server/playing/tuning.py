@@ -46,6 +46,7 @@ MIDDLE_C, A4 = 60, 69
 STANDARD_A4 = 440.0
 MAX_NOTES = 1024  # in a scale or a map
 MAX_DEGREE = 100_000
+MOST_STRETCH = 0.5  # semitones of an octave that is stretched
 # Bound on the pitch of a key, so that its frequency is a finite number.
 MAX_SEMITONES = 10_000.0
 MIN_HZ, MAX_HZ = 1e-6, 1e9
@@ -76,9 +77,20 @@ class Tuning:
     @property
     def has_octaves(self) -> bool:
         """Whether twelve keys are an octave, wherever both have a pitch."""
+        return self._off_octave < 0.01
+
+    @property
+    def is_in_a_row(self) -> bool:
+        """Whether keys play a scale's notes in a row, so that a tune written in 12 is another."""
+        return len(self.files) == 1 and self._off_octave > MOST_STRETCH
+
+    @property
+    def _off_octave(self) -> float:
+        """The largest distance of twelve keys from an octave, in semitones."""
         keys = self.keys or ()
         pairs = zip(keys, keys[12:], strict=False)
-        return all(abs(b - a - 12.0) < 0.01 for a, b in pairs if a is not None and b is not None)
+        far = (abs(b - a - 12.0) for a, b in pairs if a is not None and b is not None)
+        return max(far, default=0.0)
 
     def pitch(self, note: float, a4: float) -> float | None:
         """Return the pitch of a key as a fractional MIDI note relative to `a4` (Hz).

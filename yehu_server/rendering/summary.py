@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import mido
+
+from yehu_server.core.engine.limiter import CEILING
 from yehu_server.playing.stringing import range_text
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.performance import PartPlayer, Performance
@@ -14,6 +19,10 @@ FATE = {
     RangePolicy.CLAMP: "played as the nearest note",
     RangePolicy.SKIP: "left out",
 }
+
+VOLUME, EXPRESSION, RESET = 7, 11, 121  # controllers
+LEAST = 2  # of CC 7 and 11: below, the bow leaves the string, or nothing is heard
+NOTABLE_DB, MOST_TOLD_DB = 1.0, 7.0  # of the limiter
 
 
 def counted(number: int, thing: str) -> str:
@@ -59,19 +68,29 @@ class Summary:
     percussion_notes: int  # of channel 10, not played
     unknown_programs: tuple[int, ...]  # 1 to 128
     parts: tuple[PartSummary, ...] = ()
+    limited_db: float = 0.0  # by how much the limiter lowered the highest peak
+    clipped: tuple[str, ...] = ()  # stems above full scale, in a format that ends there
+    unheard_channels: tuple[int, ...] = ()  # 1 to 16: whose CC 7 or 11 stays at 0
 
-    def remarks(self, hint: str = "") -> list[str]:
-        """What was not played as it is written; `hint` follows that of percussion."""
+    def remarks(self, drum_hint: str = "", moved_hint: str = "") -> list[str]:
+        """What was not played as it is written, and hints at what to do about some of it."""
         percussion, moved = (
             counted(notes, "note") for notes in (self.percussion_notes, self.notes_out_of_range)
         )
         programs = ", ".join(map(str, self.unknown_programs))
+        more = self.limited_db >= MOST_TOLD_DB
+        decibels = f"{MOST_TOLD_DB:g} dB or more" if more else f"{self.limited_db:.1f} dB"
+        channels, clipped = ", ".join(map(str, self.unheard_channels)), ", ".join(self.clipped)
         solves = counted(self.unconverged_solves, "friction solve")
-        lost = counted(self.lost_states, "time")
+        lost, fate = counted(self.lost_states, "time"), f"{FATE[self.policy]}{moved_hint}"
         lines = {
-            f"channel 10 is percussion: {percussion} not played{hint}": self.percussion_notes,
-            f"{moved} outside {self.range}, {FATE[self.policy]}": self.notes_out_of_range,
+            f"channel 10 is percussion: {percussion} not played{drum_hint}": self.percussion_notes,
+            f"{moved} outside {self.range}, {fate}": self.notes_out_of_range,
             f"no preset for the programs {programs}: ignored": programs,
+            f"channel {channels}: CC 7 or 11 stays at 0: no note is heard": channels,
+            f"the limiter lowered the highest peak by {decibels}; less gain keeps "
+            "it": self.limited_db >= NOTABLE_DB,
+            f"clipped: {clipped}; float samples, or less gain, keep it": clipped,
             f"{solves} did not converge": self.unconverged_solves,
             f"the state was lost and set to rest: {lost}": self.lost_states,
         }
@@ -79,9 +98,19 @@ class Summary:
 
 
 def summary_of(
-    performance: Performance, duration_s: float, elapsed_s: float, peak: float, rms: float
+    performance: Performance,
+    duration_s: float,
+    elapsed_s: float,
+    peak: float,
+    rms: float,
+    *,
+    factor: float = 1.0,
+    clipped: Sequence[str] = (),
 ) -> Summary:
-    """Sum up a performance that has been played."""
+    """Sum up a performance that has been played.
+
+    `factor`: by which `peak` was scaled after the limiter; `clipped`: as of `Summary`.
+    """
     players, instruments = performance.players, performance.ensemble.instruments
     parts = tuple(map(_part_summary, players))
     channels: Counter[int] = Counter()
@@ -105,7 +134,43 @@ def summary_of(
             sorted({each for one in players for each in one.player.unknown_programs})
         ),
         parts=parts,
+        limited_db=limited_db(peak / factor, players[0].player.value("/output/limiter")),
+        clipped=tuple(clipped),
+        unheard_channels=tuple(sorted({each for one in players for each in _unheard(one)})),
     )
+
+
+def limited_db(peak: float, limiter_db: float) -> float:
+    """By how much the limiter, which bends above a level, lowered a peak: the inverse of `limit`.
+
+    Beyond MOST_TOLD_DB the ceiling does not tell.
+    """
+    soft = 10.0 ** (limiter_db / 20.0)
+    room = CEILING - soft
+    if peak <= soft or room <= 0.0:
+        return 0.0
+    share = min((peak - soft) / room, 1.0 - 1e-6)
+    return 20.0 * math.log10((soft + room * math.atanh(share)) / peak)
+
+
+def _unheard(one: PartPlayer) -> set[int]:
+    """The channels, from 1, with notes that CC 7 or 11 silences from the first to the last."""
+    moves = one.part.playing.mapping.of
+    highest: dict[int, dict[int, int]] = {
+        control: {} for control in (VOLUME, EXPRESSION) if moves(f"cc {control}")
+    }
+    for message in (event.message for event in one.part.score.events):
+        if isinstance(message, mido.Message) and message.type == "control_change":
+            if message.control in highest:
+                of_channel = highest[message.control]
+                of_channel[message.channel] = max(message.value, of_channel.get(message.channel, 0))
+            elif message.control == RESET and EXPRESSION in highest:
+                highest[EXPRESSION][message.channel] = 127
+    return {
+        channel + 1
+        for channel in one.player.notes_by_channel
+        if any(of_channel.get(channel, 127) < LEAST for of_channel in highest.values())
+    }
 
 
 def _part_summary(one: PartPlayer) -> PartSummary:

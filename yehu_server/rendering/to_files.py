@@ -96,21 +96,22 @@ def _plain(name: str) -> str:
 
 def write_normalized(
     takes: Iterable[Sequence[Samples]], files: Sequence[SoundWriter], folder: Path | None
-) -> None:
-    """Write blocks, scaled so that the first file has a true peak of NORMALIZED_PEAK.
+) -> float:
+    """Write blocks, scaled so that the loudest file has a true peak of NORMALIZED_PEAK.
 
-    `takes` has of each block the samples for each of the files; all are scaled alike. Temporary
-    files are in `folder`; None: where the system has its own. Raises OutputError where the disk is
-    full or cannot be written.
+    `takes` has of each block the samples for each of the files; all are scaled alike, by what is
+    returned. Temporary files are in `folder`; None: where the system has its own. Raises
+    OutputError where the disk is full or cannot be written.
     """
-    meter, shape = TruePeak(), (-1,)
+    meters: list[TruePeak] = [TruePeak() for _ in files]
+    shape: tuple[int, ...] = (-1,)
     with contextlib.ExitStack() as stack:
         try:
             scratches = [stack.enter_context(tempfile.TemporaryFile(dir=folder)) for _ in files]
             for take in takes:
-                meter.add(take[0])
                 shape = (-1, *take[0].shape[1:])
-                for scratch, samples in zip(scratches, take, strict=True):
+                for meter, scratch, samples in zip(meters, scratches, take, strict=True):
+                    meter.add(samples)
                     scratch.write(np.ascontiguousarray(samples).tobytes())
             for scratch in scratches:
                 scratch.seek(0)
@@ -118,11 +119,12 @@ def write_normalized(
             raise OutputError(
                 f"{folder or tempfile.gettempdir()}: cannot write: {error_reason(error)}"
             ) from error
-        peak = meter.finish()
+        peak = max(meter.finish() for meter in meters)
         factor = np.float32(NORMALIZED_PEAK / peak if peak > 0.0 else 1.0)
         for scratch, file in zip(scratches, files, strict=True):
             while data := scratch.read(CHUNK):
                 file.write(np.frombuffer(data, np.float32).reshape(shape) * factor)
+        return float(factor)
 
 
 def render(
@@ -157,14 +159,25 @@ def render(
     with contextlib.ExitStack() as stack:
         files = [stack.enter_context(opened(path)) for path in (target, *stems)]
         takes = _takes(performance, len(files), progress, watch)
+        factor = 1.0
         if options.normalize:
-            write_normalized(takes, files, None if target is PIPE else target.parent)
+            factor = write_normalized(takes, files, None if target is PIPE else target.parent)
         else:
             for take in takes:
                 for file, samples in zip(files, take, strict=True):
                     file.write(samples)
     elapsed_s, file = time.perf_counter() - start, files[0]
-    return summary_of(performance, file.frames / options.rate, elapsed_s, file.peak, file.rms)
+    ends = options.subtype != "float"
+    clipped = [path.name for path, one in zip(stems, files[1:], strict=True) if one.peak > 1.0]
+    return summary_of(
+        performance,
+        file.frames / options.rate,
+        elapsed_s,
+        file.peak,
+        file.rms,
+        factor=factor,
+        clipped=clipped if ends else (),
+    )
 
 
 def _takes(

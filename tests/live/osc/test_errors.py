@@ -60,6 +60,8 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/bow/forc", [(0.5,)], "did you mean /yehu/bow/force?"),
     ("/bow/forc/unit", [(0.5,)], "did you mean /yehu/bow/force/unit?"),
     ("/force", [(0.5,)], "did you mean /yehu/bow/force?"),
+    ("/plaing", [(0.5,)], "did you mean /yehu/playing/...?"),
+    ("/reverb", [(0.5,)], "did you mean /yehu/room/level?"),
     ("/preset/lod", [("ordinary",)], "did you mean /yehu/preset/load?"),
     ("/load", [("ordinary",)], "did you mean /yehu/preset/load?"),
     ("/recrod/start", [("take",)], "did you mean /yehu/record/start?"),

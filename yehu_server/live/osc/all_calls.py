@@ -6,7 +6,7 @@ the method that carries it out; docs/osc.md describes them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -90,16 +90,31 @@ def own_calls(mapping: Mapping, group: str = FIRST, below: str = "") -> list[Cal
     ]
 
 
+def owners(mappings: Iterable[Mapping]) -> dict[str, int]:
+    """The part, from 0, that each of the user's own addresses moves where it is sent without one.
+
+    That is the part that its bind names, else the first whose mapping binds it.
+
+    `mappings`: those of all parts.
+    """
+    found: dict[str, int] = {}
+    for part, mapping in enumerate(mappings):
+        for bind in mapping.binds:
+            if is_address(bind.source) and (bind.part == part + 1 or bind.source not in found):
+                found[bind.source] = part
+    return found
+
+
 def more_calls(players: Sequence[Player]) -> list[Call]:
     """The calls with the presets there are, and the user's own addresses, of some parts."""
     names = tuple(players[0].presets.names())
     calls = preset_calls(names)
-    plain: dict[str, Call] = {}  # of the first part that binds each
+    own_parts = owners(player.mapping for player in players)
     for part, player in enumerate(players):
         mapping = player.mapping
         own = own_calls(mapping, group_of(part) if part else FIRST)
-        plain = {call.address: call for call in own} | plain
+        calls += [call for call in own if own_parts[call.address] == part]
         if len(players) > 1:
             calls += preset_calls(names, group_of(part))
             calls += own_calls(mapping, group_of(part), PREFIX + group_of(part))
-    return [*calls, *plain.values()]
+    return calls

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from yehu_server.errors import YehuError
-from yehu_server.live.osc.all_calls import acts, own_calls
+from yehu_server.live.osc.all_calls import acts, own_calls, owners
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.context import Act, CallContext
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, near
@@ -167,16 +167,17 @@ class OscHandler:
         return []
 
     def _own_acts(self) -> dict[str, Act]:
-        """For addresses that mappings bind; without a part, of the first part that does."""
+        """For addresses that mappings bind; without a part, those of `owners`."""
         mappings = [player.mapping for player in self._players]
         if list(map(id, mappings)) != list(map(id, self._mappings)):
             self._mappings, self._own = mappings, {}
+            parts = owners(mappings)
             for group, mapping in zip(self._groups[1:], mappings, strict=True):
                 part = PartCalls(group, self.context)
                 for call in own_calls(mapping, group):
-                    act = partial(call.act, part)
-                    self._own.setdefault(call.address, act)
-                    self._own[PREFIX + group + call.address] = act
+                    act = self._own[PREFIX + group + call.address] = partial(call.act, part)
+                    if parts[call.address] == part_of(group):
+                        self._own[call.address] = act
         return self._own
 
     def _learn_acts(self, address: str, own: dict[str, Act]) -> dict[str, Act]:

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from yehu_server.errors import ParameterError
 from yehu_server.live.osc.call import ADDRESS, Request, osc_call
 from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.peers import Peer
-from yehu_server.live.part_addresses import check_own, split_group
+from yehu_server.live.part_addresses import check_own, part_of, split_group
 from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learn
 from yehu_server.playing.learn import LearnedSource
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_file import settable_param
+from yehu_server.playing.sources import is_address
 
 PATIENCE_S = 60.0  # to wait for something to be moved
 NOT_MOVED = -1.0
@@ -56,6 +58,8 @@ class LearnCalls(GroupCalls):
     ) -> Callable[[], None]:
         before = self._player.mapping
         source = found.source
+        if self._group and is_address(source):
+            found = replace(found, part=part_of(self._group) + 1)
         mapping, path = learn.learn(before, target, found, soft=soft, only=only)
         kept = ", ".join(learn.others(mapping, target, source))
         lost = self._pairs(before, mapping)

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Iterable
 from functools import cache, lru_cache
 
-from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean
+from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean, near_address
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.status import PART_STATUS, STATUS, STATUS_PREFIX
 from yehu_server.live.part_addresses import (
@@ -130,7 +130,10 @@ def near(address: str, parts: int, known: Iterable[str]) -> str:
     `known`: the addresses of all parameters and calls, without the prefix.
     """
     if not address.startswith(PREFIX + "/"):
-        return f"unknown address (all begin with {PREFIX}/)"
+        hint = near_address(
+            PREFIX + address[: limits.PATTERN], [PREFIX + one for one in known], 0.8
+        )
+        return f"unknown address (all begin with {PREFIX}/){hint}"
     group, own = split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
     try:
         check_part(group, parts)
@@ -140,9 +143,7 @@ def near(address: str, parts: int, known: Iterable[str]) -> str:
     except YehuError as error:
         return str(error)
     of_group = [PREFIX + one for one in known if split_group(one)[0] == group]
-    # One that ends in this name comes before one that is merely similar.
-    ending = [one for one in of_group if one.endswith(f"/{own.lstrip('/')}")]
-    return f"unknown address{did_you_mean(ending[0] if ending else address, of_group, 0.75)}"
+    return f"unknown address{near_address(address, of_group, 0.75, prefix=PREFIX + group)}"
 
 
 def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[str]:

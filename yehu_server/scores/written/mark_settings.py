@@ -75,7 +75,7 @@ def harmonics_of(within: NoteRange) -> Mapping[float, Node]:
     }
 
 
-PLUCKED_DB = -3.5  # beside bowed notes: the peaks of plucked ones are some 13 dB higher
+PLUCKED_DB = -3.5  # beside bowed notes: the peaks of plucked ones are some 8 dB higher
 
 
 @dataclass

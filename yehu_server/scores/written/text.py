@@ -13,6 +13,7 @@ from typing import Any
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.playing.pitch_and_level import note_name
+from yehu_server.scores.written.dynamics import LEVELS
 from yehu_server.scores.written.in_range import default_parts, moved_part
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Written
 
@@ -67,7 +68,7 @@ def _changes(values: Iterable[tuple[Fraction, float]]) -> list[tuple[Fraction, f
 
 
 def _notes(written: Written, part: Part) -> Iterator[str]:
-    around = _around(part)
+    around = _around(written, part)
     last = ""
     for note in part.notes:
         bar, quarters = written.place(note.beat)
@@ -84,7 +85,7 @@ def _notes(written: Written, part: Part) -> Iterator[str]:
         ).rstrip()
 
 
-def _around(part: Part) -> dict[Fraction, list[str]]:
+def _around(written: Written, part: Part) -> dict[Fraction, list[str]]:
     """Signs and spans as text, by the beats of the notes that they stand at."""
     beats = [note.beat for note in part.notes]
     around: dict[Fraction, list[str]] = defaultdict(list)
@@ -94,9 +95,12 @@ def _around(part: Part) -> dict[Fraction, list[str]]:
         around[beats[at]].append(text)
 
     for sign in part.signs:
+        text = f"[{_mark(Mark(sign.name, sign.value))}]"
         at = bisect_left(beats, sign.beat)  # it holds from the next note on
-        if at < len(beats):
-            put(beats[at], f"[{_mark(Mark(sign.name, sign.value))}]")
+        if at and sign.name in LEVELS and beats[at - 1] < sign.beat < part.notes[at - 1].end:
+            put(sign.beat, f"{text} from quarter {_mixed(written.place(sign.beat)[1] + 1)}")
+        elif at < len(beats):
+            put(beats[at], text)
     for span in part.spans if beats else ():
         put(span.begin, f"{span.name} (")
         put(span.end, f") {span.name}")

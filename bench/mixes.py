@@ -3,8 +3,10 @@
 Players by MIDI, by OSC (datagrams and a connection) and on a page play a note every 10 ms, the page
 half of them 50 ms ahead. Beside them plays a mix: up to 31 pages, of owners and guests, that send
 all kinds of commands as fast as they may, now and ahead; up to 20 others by OSC, of either kind,
-with up to twice the notes that are admitted, some in bundles for one time; another MIDI input. A
-note is late by the frames from the one that it was sent for to the one at which it was applied.
+with up to twice the notes that are admitted, some in bundles for one time; another MIDI input. Or
+31 pages send commands of one kind. A note is late by the frames from the one that it was sent for
+to the one at which it was applied; one that is not is "ended" where a page's panic came while it
+waited, else "lost".
 Sockets and the system's scheduling are left out.
 """
 
@@ -21,7 +23,7 @@ from attacks import bundle, prefixed
 from yehu_server.core.engine.mailbox import MIDI_INPUTS, PAGES, SERVER
 from yehu_server.core.engine.rig import ring_place
 from yehu_server.core.midi.events import DISCONNECT, MESSAGE
-from yehu_server.core.player.commands import BEGIN, DRAW, END, KINDS, SLIDE, WRITE
+from yehu_server.core.player.commands import BEGIN, DRAW, END, KINDS, SLIDE, STOP, WRITE
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.audio.output import shared_memory
 from yehu_server.live.midi.feed import MidiFeed, SharedRing
@@ -38,6 +40,7 @@ from yehu_server.params.table import TABLE
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import assemble, player_of
+from yehu_server.system.memory import map_all
 from yehu_server.util.token_bucket import TokenBucket
 
 RATE = 44100.0
@@ -50,14 +53,17 @@ MOST_OF_DEADLINE = 0.5
 
 
 class Page:
-    """A page that sends commands of all kinds as fast as it may."""
+    """A page that sends commands of all kinds, or of one, as fast as it may."""
 
-    def __init__(self, number: int, of: int, chance: random.Random) -> None:
+    def __init__(self, number: int, of: int, chance: random.Random, kind: str = "") -> None:
         self.number, self._chance = number, chance
         self._role = chance.choice((OWN, PLAY))
         self._many = chance.choice((1, 20, 300, limits.PAGE_EVENTS))  # of a message
         self._ahead_s = chance.choice((None, 0.0, 0.05, 0.2, 0.5))
         self._weights = [chance.random() ** 3 for _ in KINDS[WRITE:]]
+        if kind:
+            self._role, self._ahead_s = OWN, 0.2
+            self._weights = [float(each == kind) for each in KINDS[WRITE:]]
         self._waiting = np.empty((0, 5))
         at_once = max(AT_ONCE, limits.PAGE_EVENTS_AT_ONCE / of)
         self._bucket = TokenBucket(limits.PAGE_EVENTS_A_SECOND, at_once)
@@ -123,9 +129,11 @@ class Sender(Peer):
 class Stage:
     """A part on a stage, with all who play it, in a time of frames."""
 
-    def __init__(self, mix: int) -> None:
+    def __init__(self, mix: int | str) -> None:
         chance = self._chance = random.Random(mix)  # noqa: S311
+        kind = mix if isinstance(mix, str) else ""
         memory, options = shared_memory(), PlayingOptions()
+        map_all(memory.buffer)  # as the audio process does
         tuned = calibration_for(RATE)
         self.ensemble, (own,) = assemble([options], RATE, [tuned], memory=memory.buffer)
         self.instrument = self.ensemble.first
@@ -144,8 +152,9 @@ class Stage:
         self._players = {name: Sender(has_connection="TCP" in name) for name in OSC_KEYS}
         for sender in self._players.values():  # before others: they have a queue each
             sender.play(self._handler, [pack("/yehu/ping")])
-        count = chance.choice((1, 6, 31)) if mix else 0
-        self._mix = [Page(number + 1, count, chance) for number in range(count)]
+        count = (31 if kind else chance.choice((1, 6, 31))) if mix else 0
+        self._mix = [Page(number + 1, count, chance, kind) for number in range(count)]
+        mix = 0 if kind else mix
         self._osc = chance.choice((500.0, 2000.0, 35200.0)) if mix else 0.0  # notes a second
         self._senders = [
             Sender(has_connection=n % 2 == 1) for n in range(chance.choice((1, 4, 20)))
@@ -207,7 +216,7 @@ def _due(a_second: float, begin: int, frames: int) -> Iterator[int]:
     return iter(range(first, end))
 
 
-def run(mix: int, block: int, seconds: float) -> tuple[Stage, np.ndarray, np.ndarray]:
+def run(mix: int | str, block: int, seconds: float) -> tuple[Stage, np.ndarray, np.ndarray]:
     """Play beside a mix; return the stage, the CPU time of each block, and applied commands."""
     stage, out = Stage(mix), np.zeros((block, 2), np.float32)
     stage.instrument.report_commands()
@@ -222,12 +231,13 @@ def run(mix: int, block: int, seconds: float) -> tuple[Stage, np.ndarray, np.nda
     return stage, np.array(times), np.concatenate(applied)
 
 
-def figures(mix: int, block: int, seconds: float, runs: int) -> dict[str, Any]:
+def figures(mix: int | str, block: int, seconds: float, runs: int) -> dict[str, Any]:
     """Play beside a mix so many times; return a row of the table. Least times count."""
     played = [run(mix, block, seconds) for _ in range(runs)]
     row: dict[str, Any] = {}
     for stage, _, applied in played:
         begun = applied[applied["kind"] == BEGIN]
+        panics = applied["frame"][(applied["kind"] == STOP) & (applied["value"] != 0.0)]
         found = {"applied": len(applied)}
         end = stage.ensemble.frame - round((NOTE_S + 2.0 * AHEAD_S) * RATE)
         for who, asked in stage.asked.items():
@@ -236,7 +246,9 @@ def figures(mix: int, block: int, seconds: float, runs: int) -> dict[str, Any]:
             # Keys of MIDI come again, later.
             came = [frames[key][frames[key] >= frame][:1] - frame for key, frame in wanted]
             found[f"{who} late"] = max(int(each[0]) for each in came if len(each))
-            found[f"{who} lost"] = sum(not len(each) for each in came)
+            gone = [frame for (_, frame), each in zip(wanted, came, strict=True) if not len(each)]
+            ended = sum(_is_ended(frame, block, panics) for frame in gone)
+            found[f"{who} ended"], found[f"{who} lost"] = ended, len(gone) - ended
         dropped = stage.instrument._rig["mail"]["dropped"][0, :, 0]  # noqa: SLF001
         for who, writer in {"MIDI": MIDI_INPUTS, "OSC": SERVER, "pages": PAGES}.items():
             found[f"{who} dropped"] = int(dropped[writer])
@@ -245,7 +257,15 @@ def figures(mix: int, block: int, seconds: float, runs: int) -> dict[str, Any]:
     return row | {"mean": float(times.mean()), "longest": float(times.max())}
 
 
+def _is_ended(frame: int, block: int, panics: np.ndarray) -> bool:
+    """Whether a panic of somebody ended a note for this frame, while it waited."""
+    posted = frame - round(AHEAD_S * RATE) - block  # at the earliest
+    return bool(((panics >= posted) & (panics <= frame + block)).any())
+
+
 def failures(row: dict[str, Any], block: int) -> list[str]:
     """What misses its bound: a note is late by less than a block, MOST_OF_DEADLINE is taken."""
-    late = [f"{who} late" for who in ("MIDI", *OSC_KEYS, "page") if row[f"{who} late"] >= block]
-    return late + ["longest"] * (row["longest"] > MOST_OF_DEADLINE)
+    doors = ("MIDI", *OSC_KEYS, "page")
+    missed = [f"{who} late" for who in doors if row[f"{who} late"] >= block]
+    missed += [f"{who} lost" for who in doors if row[f"{who} lost"]]
+    return missed + ["longest"] * (row["longest"] > MOST_OF_DEADLINE)

@@ -9,20 +9,34 @@ import contextlib
 import io
 import pickle
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, Self
+
+LONGEST = 300  # characters of a text or a name that are kept
 
 
 class ForeignError(Exception):
     """Stands for whatever object another process sent; its class has the name of the sent one.
 
-    It is an exception, since Dask asserts that what it hands on as one is one.
+    It is an exception, since Dask asserts that what it hands on as one is one. Of its arguments it
+    keeps what is soon shown: lists that have one another twice, forty deep, are text without end.
     """
 
+    def __new__(cls, *_arguments: object, **_named: object) -> Self:
+        """Keep no argument here, as exceptions do."""
+        return super().__new__(cls)
+
     def __init__(self, *arguments: object, **_named: object) -> None:
-        super().__init__(*arguments)
+        super().__init__(*map(_brief, arguments[:LONGEST]))
 
     def __setstate__(self, _state: object) -> None:
         """Keep nothing of it."""
+
+
+def _brief(value: object) -> object:
+    if isinstance(value, str):
+        return value[:LONGEST]
+    is_small = isinstance(value, int) and abs(value) < 1 << 63
+    return value if is_small else type(value).__name__
 
 
 def plain(data: Any, *, buffers: Any = ()) -> Any:
@@ -34,11 +48,9 @@ def plain(data: Any, *, buffers: Any = ()) -> Any:
 
 
 class _PlainUnpickler(pickle.Unpickler):
-    def find_class(self, module: str, name: str) -> Any:
+    def find_class(self, _module: str, name: str) -> Any:
         """Hand out nothing that could do anything."""
-        if (module, name) == ("builtins", "bytes"):  # Dask pickles the type of what it sends
-            return bytes
-        return _KNOWN.get(name) or type(str(name), (ForeignError,), {})
+        return _KNOWN.get(name) or type(str(name)[:LONGEST], (ForeignError,), {})
 
 
 # How exceptions travel: with their class and arguments, but without the frames of their traceback.

@@ -54,3 +54,8 @@ def open_shared(handle: Handle) -> mmap.mmap:
     if sys.platform == "win32":
         return mmap.mmap(-1, size, tagname=str(place))
     return mmap.mmap(int(place), size)
+
+
+def map_all(memory: mmap.mmap) -> None:
+    """Map each page in this process now, so that a real-time thread takes no page fault later."""
+    memory[:: mmap.PAGESIZE]

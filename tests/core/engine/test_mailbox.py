@@ -182,7 +182,7 @@ def test_a_full_ring_drops_and_counts_what_comes_and_keeps_what_it_has(make):
         for number in range(RING + 10):
             assert post_numbered(instrument, number) == (number < RING)
         assert instrument.dropped_events == dropped
-        run(instrument, RING // BUDGET_PER_FRAME + 1000)
+        run(instrument, 2 * RING // BUDGET_PER_FRAME + 1000)
         np.testing.assert_array_equal(numbers(instrument.applied_commands()), np.arange(RING))
 
 

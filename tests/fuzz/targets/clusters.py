@@ -44,8 +44,6 @@ def check(value: object, depth: int) -> None:
         for entry in value:
             check(entry, depth + 1)
     else:
-        is_stand_in = isinstance(value, type) and (
-            issubclass(value, ForeignError) or value is bytes
-        )
+        is_stand_in = isinstance(value, type) and issubclass(value, ForeignError)
         is_function = getattr(value, "__module__", "") == plain.__module__
         assert isinstance(value, (*PLAIN, ForeignError)) or is_stand_in or is_function, type(value)

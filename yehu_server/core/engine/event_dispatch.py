@@ -4,9 +4,9 @@ The events of a part lie with its first instrument. Each is interpreted once, be
 that it is for are computed (``midi.interpret_events``); its commands go to the heaps of those who
 play.
 
-Whatever is sent, the work for a frame is bounded: events beyond a budget of commands
-(``mailbox.ready_at``) come at a later frame, MIDI's first. Then the server, each sender of OSC and
-each page have as many commands each (`next_queue`). Each has a queue of its own.
+Whatever is sent, the work for a frame is bounded: events beyond a budget of what their commands
+cost (``mailbox.ready_at``) come at a later frame, MIDI's first. Then the server, each sender of OSC
+and each page have an even share each (`next_queue`). Each has a queue of its own.
 """
 
 from __future__ import annotations
@@ -71,11 +71,12 @@ from yehu_server.core.midi.events import LEAVE, NOTE_OFF, RELEASE_ALL
 from yehu_server.core.midi.interpret_events import interpret
 from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import MIDI, NONE
-from yehu_server.core.player.commands import COMMAND, END, LIFT
+from yehu_server.core.player.commands import COMMAND, END, LIFT, cost
 
 # Frames from now that an event may be: the server plays whole scores ahead, other writers play
 # now, so that what is nonsense of theirs fills the heap for seconds at most.
 FARTHEST, FARTHEST_AHEAD = 1 << 40, 1 << 20
+LEAST_COST = 2  # of an event, also where it comes to no command
 WAITING_BYTES = WAITING.itemsize
 SLOT_BYTES = SLOTS_PER_EVENT * NOTES.itemsize
 
@@ -121,7 +122,7 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
         kind, index, value, other = event.kind, event.index, event.value, event.other
         pop(queue, mail.pending[number])
         count_event(mail, queue, number, -1)
-        price, is_cancelled = 1, False
+        price, is_cancelled = LEAST_COST, False
         if kind in STARTS:
             is_cancelled = take_note(notes_of(rig, number), mail.secret, order, index, value)
             is_cancelled = is_cancelled or order < mail.released
@@ -132,8 +133,7 @@ def interpret_part_events(rigs: Any, part: int, now: int, end: int) -> int:
             mail.released = max(mail.released, order)
         if not is_cancelled:
             interpret(m, at(rig, TABLES_AT), frame, kind, index, value, other)
-            price = max(1, m.commands)
-            hand_over(rigs, part, m)
+            price = max(price, hand_over(rigs, part, m))
         spend(mail.interpreting, frame, price)
         mail.finish_tag[number] = mail.virtual_time + price
         if is_full:
@@ -177,7 +177,7 @@ def first_frame(mail: Any) -> int:
 def next_queue(mail: Any, frame: int) -> int:
     """The queue whose first event is next, of those that have one due at a frame.
 
-    Inputs come first. Of the others it is the one that had the fewest commands: start-time fair
+    Inputs come first. Of the others it is the one that had the least work: start-time fair
     queueing (Goyal, Vin and Cheng 1996), which takes one that was idle as even with those it meets,
     and here before them.
     """
@@ -283,9 +283,11 @@ def have_room(rigs: Any, part: int, players: int) -> bool:
 
 
 @compiled_with_aliasing
-def hand_over(rigs: Any, part: int, m: Any) -> None:
-    """Give those who play a part the commands that an event came to."""
+def hand_over(rigs: Any, part: int, m: Any) -> int:
+    """Give those who play a part the commands that an event came to; return what they cost."""
+    price = 0
     for n in range(m.commands):
+        price += cost(m.out_kind[n], m.out_index[n], m.out_other[n])
         rig = at(rigs, (part + m.out_player[n]) * RIG_BYTES)
         mail = record_at(rig, MAIL_AT, MAIL)
         if mail.waiting == HEAP:
@@ -304,6 +306,7 @@ def hand_over(rigs: Any, part: int, m: Any) -> None:
         )
         mail.waiting += 1
         mail.ordered += 1
+    return int(price)
 
 
 @native

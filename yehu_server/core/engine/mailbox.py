@@ -24,9 +24,9 @@ SMALL_RING = 1 << 12  # of each other writer
 HEAP = 1 << 14
 ROOM = 1 << 12  # entries that a heap of commands has room for before another event is interpreted
 APPLIED_AT_ONCE = 64  # commands at one frame; the rest waits for the next
-# What a live instrument does at once: events moved from each ring for each 64 frames, and commands
-# (`ready_at`). Without limit offline.
-LIVE_INTAKE, LIVE_BUDGET, BUDGET_PER_FRAME = 1 << 10, 1 << 7, 6
+# What a live instrument does at once: events moved from each ring for each 64 frames, and the cost
+# of commands (`ready_at`). Without limit offline.
+LIVE_INTAKE, LIVE_BUDGET, BUDGET_PER_FRAME = 1 << 10, 192, 14
 UNLIMITED = 1 << 40
 # The writers of events. Inputs give the time of arrival (ns) in place of a frame; pages put their
 # number above the KIND_BITS of a kind, and the server that of the sender (0: itself).
@@ -36,7 +36,7 @@ KIND_BITS = 8
 # Events to come: a queue of each writer, of each page and of senders of OSC, so that none fills
 # another's.
 PAGE_QUEUES, PAGE_QUEUE = 64, 1 << 8
-SENDER_QUEUES, SENDER_QUEUE = 8, 1 << 11
+SENDER_QUEUES, SENDER_QUEUE = 32, 1 << 10
 STARTS = (NOTE_ON, FINGER_ON, BEGIN)  # kinds of events that begin a note
 RESERVE = 8  # entries of these, for the ends of what a page or sender played
 FIRST_SENDER = PAGES + PAGE_QUEUES
@@ -70,7 +70,7 @@ MAIL = np.dtype(
         ("pending", np.int64, QUEUES),  # events in each queue, and the frame of the first
         ("first", np.int64, QUEUES),
         ("pending_events", np.int64),  # events in all queues
-        # Fair queueing (`next_queue`), in commands: finish tag of each queue, and virtual time.
+        # Fair queueing (`next_queue`), by cost: finish tag of each queue, and virtual time.
         ("finish_tag", np.int64, QUEUES),
         ("virtual_time", np.int64),
         ("released", np.int64),  # note-ons that were posted before this one are not played
@@ -78,7 +78,7 @@ MAIL = np.dtype(
         ("waiting", np.int64),  # entries in the heap of commands
         ("reporting", np.int64),
         ("intake", np.int64),  # events moved from each ring at a time
-        ("at_once", np.int64),  # commands at once, by either budget
+        ("at_once", np.int64),  # cost of commands at once, by either budget
         ("interpreting", BUDGET),
         ("applying", BUDGET),
     ],
@@ -131,18 +131,18 @@ def is_ready(budget: Any, at_once: int, frame: int) -> bool:
 def ready_at(budget: Any, at_once: int) -> int:
     """The first frame at which a budget has something left.
 
-    It is that of a token bucket counted in commands, which one event may overdraw: `at_once`, and
-    BUDGET_PER_FRAME more each frame. As it counts frames, what it defers does not depend on the
-    size of blocks.
+    It is that of a token bucket of the cost of commands (``player.commands.cost``), which one event
+    may overdraw: `at_once`, and BUDGET_PER_FRAME more each frame. As it counts frames, what it
+    defers does not depend on the size of blocks.
     """
     over = budget.used - at_once + 1
     return int(budget.frame + max(0, (over + BUDGET_PER_FRAME - 1) // BUDGET_PER_FRAME))
 
 
 @compiled
-def spend(budget: Any, frame: int, commands: int) -> None:
-    """Take commands from a budget at a frame, no earlier than those before."""
-    budget.used = max(0, budget.used - BUDGET_PER_FRAME * (frame - budget.frame)) + commands
+def spend(budget: Any, frame: int, cost: int) -> None:
+    """Take the cost of commands from a budget at a frame, no earlier than those before."""
+    budget.used = max(0, budget.used - BUDGET_PER_FRAME * (frame - budget.frame)) + cost
     budget.frame = frame
 
 

@@ -73,7 +73,7 @@ from yehu_server.core.physics import kernel, refined
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MODEL, REFINED, RELATIVE_VELOCITY, STATE, STRINGS
 from yehu_server.core.physics.time_loop import advance_by
-from yehu_server.core.player.commands import COMMAND, apply
+from yehu_server.core.player.commands import COMMAND, apply, cost
 from yehu_server.core.player.ear import EAR_SAMPLES, remember
 from yehu_server.core.player.listening import update_player
 from yehu_server.core.player.record import PLAYER
@@ -90,8 +90,8 @@ def apply_due(rig: Any, mail: Any, p: Any, c: Any) -> None:
             return
         if not is_ready(mail.applying, mail.at_once, c.frame):
             return
-        spend(mail.applying, c.frame, 1)
         command = heap[0].command
+        spend(mail.applying, c.frame, cost(command.kind, command.index, command.other))
         apply(p, c, c.frame, command.kind, command.index, command.value, command.other)
         if mail.reporting != 0:
             report(rig, mail, c.frame, command)

@@ -67,6 +67,14 @@ KINDS = (
 )  # fmt: skip
 RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, DRAW, LIFT, STOP, RELEASE = range(len(KINDS))
 MAX_RAMP = 1e9  # frames of a ramp, ms of a glide
+# What each costs at most, of what EXPRESS does (some 0.3 us; bench/worst.py --mixes).
+COSTS = np.array([2, 2, 2, 1, 8, 8, 5, 2, 2, 2, 2])
+COST_TO_FOLLOW, COST_OF_ONE_OF_MANY = 5, 2  # a write that bow and finger follow; END of more keys
+IS_FOLLOWED = np.zeros(PARAMETER_COUNT, np.bool_)
+IS_FOLLOWED[[
+    BEND, SHARPENING_CORRECTION, DYNAMICS, INTENSITY, SPEED, PRESSURE, POSITION, BRILLIANCE,
+    EVENNESS, VELOCITY,
+]] = True  # fmt: skip
 
 COMMAND = np.dtype(
     [
@@ -115,6 +123,16 @@ def apply(
             write(p, c, index, clamp_to_range(index, value), kind == HOLD, glide_ms)
         elif kind == EXPRESS:
             set_for_next_note(p, c, index, clamp_to_range(index, value))
+
+
+@compiled_exactly
+def cost(kind: int, index: int, other: float) -> int:
+    """What a command costs, for budgets of work (``engine.mailbox.ready_at``)."""
+    if not 0 <= kind < len(COSTS):
+        return 1
+    if kind in (WRITE, HOLD) and 0 <= index < PARAMETER_COUNT and IS_FOLLOWED[index]:
+        return COST_TO_FOLLOW
+    return COST_OF_ONE_OF_MANY if kind == END and other != 0.0 else int(COSTS[kind])
 
 
 @compiled_exactly

@@ -17,7 +17,7 @@ from typing import Any
 
 from yehu_server.errors import DeviceError
 from yehu_server.live.audio.devices import OUTPUT, AudioDevice, choose, devices, load_portaudio
-from yehu_server.system.memory import open_shared
+from yehu_server.system.memory import map_all, open_shared
 from yehu_server.util.processes import Message, Parent
 
 SEARCH_EVERY_S, LATER_EVERY_S = 0.5, 2.0
@@ -36,6 +36,7 @@ class Stream:
         import numpy as np
 
         self._memory = open_shared(order["memory"])
+        map_all(self._memory)
         address = np.frombuffer(self._memory, np.uint8).ctypes.data
         callback, self._own = (_playing if order["kind"] == OUTPUT else _following)(address, order)
         foreign = sounddevice._ffi  # noqa: SLF001 - the documented way for C callbacks

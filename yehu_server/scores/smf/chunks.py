@@ -11,7 +11,7 @@ import struct
 from dataclasses import dataclass, field
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.smf.track import DamageReport, Track, decode
+from yehu_server.scores.smf.track import DamageReport, KnownMessages, Track, decode
 
 JUNK_BYTES = 65_536  # among which a header is searched
 HEADER = b"MThd\0\0\0"  # with the length that all headers have, so that prose is none
@@ -140,6 +140,7 @@ def read_parts(data: bytes, start: int, end: int, faults: DamageReport) -> list[
     header is damaged, or where there is more than memory should hold.
     """
     parts: list[Part] = []
+    known = KnownMessages()
     tracks, room, pos = 0, MAX_EVENTS, start
     for _ in range(MAX_CHUNKS + 2):  # after the header, and the end
         if pos >= end:
@@ -154,7 +155,7 @@ def read_parts(data: bytes, start: int, end: int, faults: DamageReport) -> list[
         elif tag == b"MTrk":
             if tracks == MAX_TRACKS:
                 raise ScoreError(f"has more than {MAX_TRACKS} tracks")
-            track, pos = _track(data, pos, end, room, faults)
+            track, pos = _track(data, pos, end, room, faults, known)
             if track.events > room:
                 raise ScoreError(f"has more than {MAX_EVENTS} events")
             parts[-1].tracks.append(track)
@@ -203,7 +204,9 @@ def _header(data: bytes, at: int, end: int, faults: DamageReport) -> tuple[Part 
     return Part(at, file_format, announced, division), after
 
 
-def _track(data: bytes, at: int, end: int, room: int, faults: DamageReport) -> tuple[Track, int]:
+def _track(
+    data: bytes, at: int, end: int, room: int, faults: DamageReport, known: KnownMessages
+) -> tuple[Track, int]:
     """A track, and the byte after it.
 
     Its length is believed where a chunk follows or the file ends. If not, the track is read up to
@@ -212,7 +215,7 @@ def _track(data: bytes, at: int, end: int, room: int, faults: DamageReport) -> t
     declared = at + 8 + _length(data, at)
     believed = declared <= end and at + 8 <= end and is_chunk(data, declared, end)
     stop = declared if believed else _next(data, min(at + 8, end), end)
-    track = decode(data, min(at + 8, stop), stop, room, faults)
+    track = decode(data, min(at + 8, stop), stop, room, faults, known)
     if track.after_end is None:
         if declared > end == stop:
             faults.add("the file is cut short", end)

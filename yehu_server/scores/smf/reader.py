@@ -14,6 +14,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -53,6 +54,7 @@ MAX_BYTES = 64 * 2**20
 MAX_REST_S = 30  # between the last message and the end of a track
 # Of a state that the last value alone decides: no pedals, selections and modes.
 CONTINUOUS = {1, 2, 4, 7, 8, 10, 11, *range(16, 20), *range(70, 80), *range(91, 96)}
+MOVES = {"pitchwheel", "aftertouch", "polytouch", "control_change"}
 _Song = tuple[list[Track], int, int]  # what sounds together, number of the first, the division
 
 MOD_WHEEL = 1  # controller
@@ -102,9 +104,7 @@ def settled(messages: Sequence[Placed], starts: Sequence[int]) -> list[Placed]:
             number = message.control
         elif kind == "polytouch":
             number = message.note
-        if kind in ("pitchwheel", "aftertouch", "polytouch") or (
-            kind == "control_change" and number in CONTINUOUS
-        ):
+        if kind in MOVES and (kind != "control_change" or number in CONTINUOUS):
             source = kind, message.channel, number, bisect_right(starts, at)
             if source in last:
                 kept[last[source]] = None
@@ -210,7 +210,13 @@ def _play_together(
     tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
     messages = sorted((placed for track in tracks for placed in track.messages), key=itemgetter(0))
     starts = [track.start_at for track in tracks]  # a message's byte is within its track
-    messages = ended(settled(without_resting_wheels(messages), starts), faults)
+    distinct = [_distinct(track) for track in tracks]
+    kinds = {message.type for found in distinct for message in found}
+    if "control_change" in kinds:
+        messages = without_resting_wheels(messages)
+    if not kinds.isdisjoint(MOVES):
+        messages = settled(messages, starts)
+    messages = ended(messages, faults)
     clock = Clock(division, tempos)
     last = max(tracks, key=lambda track: track.end)
     end_s = clock.seconds(last.end)
@@ -228,9 +234,10 @@ def _play_together(
     tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
     tuned, remarks = retuned(events, [(clock.seconds(tick), body) for tick, body in tunings])
     places = {
-        (event.track, event.message.channel)
-        for event in events
-        if event.message.type == "note_on" and event.message.channel != PERCUSSION_CHANNEL
+        (number, message.channel)
+        for number, found in enumerate(distinct, start=first)
+        for message in found
+        if message.type == "note_on" and message.channel != PERCUSSION_CHANNEL
     }
     names, encoding = named(tracks)
     parts = _parts(places, dict(enumerate(names, start=first)))
@@ -244,6 +251,11 @@ def _play_together(
         remarks=remarks,
         keys=_keys(tracks, division),
     )
+
+
+def _distinct(track: Track) -> list[mido.Message]:
+    """The messages of a track, each of those that are equal once: they are one object."""
+    return list({id(message): message for _, message, _ in track.messages}.values())
 
 
 def without_resting_wheels(messages: Sequence[Placed]) -> list[Placed]:
@@ -265,19 +277,16 @@ def _events(
     messages: Sequence[Placed], clock: Clock, starts: Sequence[int], first: int
 ) -> tuple[ScoreEvent, ...]:
     """Messages at their times; each is of the track within whose bytes it lies."""
-    events: list[ScoreEvent] = []
-    before, seconds, beat = -1, 0.0, 0.0
+    ends = [*starts[1:], MAX_BYTES]
     begin, end, track = 0, 0, 0  # of the bytes of the last message's track, and its number
-    for tick, message, at in messages:
-        if tick != before:
-            before, seconds, beat = tick, clock.seconds(tick), clock.beat(tick)
+    rows = []
+    times = clock.times(map(itemgetter(0), messages))
+    for (_, message, at), (seconds, beat) in zip(messages, times, strict=True):
         if not begin <= at < end:
-            number = bisect_right(starts, at)
-            begin = starts[number - 1] if number else 0
-            end = starts[number] if number < len(starts) else MAX_BYTES
-            track = first - 1 + number
-        events.append(ScoreEvent(seconds, message, beat, track))
-    return tuple(events)
+            number = max(bisect_right(starts, at) - 1, 0)
+            begin, end, track = starts[number], ends[number], first + number
+        rows.append((seconds, message, beat, track))
+    return tuple(map(partial(tuple.__new__, ScoreEvent), rows))
 
 
 def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:

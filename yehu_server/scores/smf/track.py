@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 import mido
 
@@ -123,6 +122,16 @@ class Clock:
         """The time of a tick in quarter notes; NaN where frames are counted."""
         return tick / self._per_beat
 
+    def times(self, ticks: Iterable[int]) -> Iterator[tuple[float, float]]:
+        """The same of ticks in order: seconds and beat of each."""
+        spans = zip(self._ticks, self._spans, strict=True)
+        (begin, (so_far, rate)), following = next(spans), next(spans, None)
+        per_second, per_beat = self._units_per_second, self._per_beat
+        for tick in ticks:
+            while following is not None and tick >= following[0]:
+                (begin, (so_far, rate)), following = following, next(spans, None)
+            yield (so_far + (tick - begin) * rate) / per_second, tick / per_beat
+
 
 @dataclass
 class Track:
@@ -187,23 +196,54 @@ class _Cursor:
         return min(value, LARGEST_NUMBER)
 
 
-@lru_cache(maxsize=1 << 16)
-def _message(status: int, body: bytes) -> mido.Message:
-    """A message, cached and never changed: making one takes longer than the rest of reading."""
-    return mido.Message.from_bytes([status, *body])
+OF_ALL = ("type", "time", "channel")  # what all messages have
 
 
-def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) -> Track:
+class MessagesOfStatus(dict[bytes, "mido.Message | None"]):
+    """The messages of a file with one status, by their data bytes; None where those are damaged.
+
+    Each is made once and never changed: making one takes longer than the rest of reading.
+    """
+
+    def __init__(self, status: int) -> None:
+        super().__init__()
+        self.length = 1 if status & 0xE0 == 0xC0 else 2
+        self._plain = mido.Message.from_bytes([status, *[0] * self.length])
+        self._names = [name for name in vars(self._plain) if name not in OF_ALL]
+
+    def __missing__(self, body: bytes) -> mido.Message | None:
+        message = None
+        if body.isascii():  # no byte above 127
+            message = self._plain.copy()  # without checks, which take three times as long
+            if len(self._names) == len(body):
+                vars(message).update(zip(self._names, body, strict=True))
+            else:
+                vars(message)["pitch"] = body[0] + (body[1] << 7) - 8192
+        self[body] = message
+        return message
+
+
+class KnownMessages(dict[int, MessagesOfStatus]):
+    """The messages of a file, by status."""
+
+    def __missing__(self, status: int) -> MessagesOfStatus:
+        return self.setdefault(status, MessagesOfStatus(status))
+
+
+def decode(
+    data: bytes, start: int, stop: int, room: int, faults: DamageReport, known: KnownMessages
+) -> Track:
     """Read the events from one byte to another, as far as possible.
 
-    Reading ends with the first event beyond `room`, so that `events` is larger then.
+    Reading ends with the first event beyond `room`, so that `events` is larger then. `known`: the
+    messages of the same file so far.
     """
     track = Track(start_at=start)
     cursor = _Cursor(data, start, stop)
-    keep, message_of = track.messages.append, _message
+    keep = track.messages.append
     tick = longest = events = 0
     at = pos = start
-    running = 0  # kept across metas and sysex, as some writers rely on it
+    running, messages = 0, known[0x80]  # kept across metas and sysex, as some writers rely on it
     try:
         while pos < stop and events <= room:
             at = pos
@@ -224,13 +264,13 @@ def decode(data: bytes, start: int, stop: int, room: int, faults: DamageReport) 
                 status = cursor.byte()
                 pos = cursor.pos
             if status < SYSEX:
-                running = status
-                length = 1 if status & 0xE0 == 0xC0 else 2
-                cursor.pos = pos
-                body = data[pos : pos + length] if pos + length <= stop else cursor.take(length)
-                pos += length
-                if body.isascii():  # no byte above 127
-                    keep((tick, message_of(status, body), at))
+                if status != running:
+                    running, messages = status, known[status]
+                after = pos + messages.length
+                message = messages[data[pos:after] if after <= stop else cursor.take(stop)]
+                pos = after
+                if message is not None:
+                    keep((tick, message, at))
                 else:
                     # Dropped at its full length: mostly this is a velocity above 127, and the
                     # next message is intact.

@@ -1,4 +1,8 @@
-"""The VST3 plug-in in hosts that others wrote: pedalboard and dawdreamer, both of JUCE."""
+"""The VST3 plug-in in hosts of others, all of JUCE: pedalboard, dawdreamer and pluginval."""
+
+import os
+import shutil
+import subprocess
 
 import mido
 import numpy as np
@@ -110,3 +114,16 @@ def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, show
     assert raw(other, "Room size").string_value == "25 m"  # by the preset, which is a hall
     assert raw(other, "Mapping").string_value == shown["/mapping"].choices[-1]
     assert level_db(played(other)) == pytest.approx(level_db(quiet), abs=0.5)
+
+
+@pytest.mark.skipif(shutil.which("pluginval") is None, reason="there is no pluginval")
+def test_pluginval_at_its_strictest_finds_nothing(built, display, tmp_path):
+    words = ["--validate", built / "Yehu.vst3", "--strictness-level", "10"]
+    done = subprocess.run(
+        [shutil.which("pluginval"), *words],
+        env={**os.environ, "DISPLAY": display, "HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout[-2000:]

@@ -1,3 +1,5 @@
+import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -44,6 +46,21 @@ def host(tmp_path_factory, built):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return program
+
+
+@pytest.fixture(scope="session")
+def display():
+    """The name of an X display of its own."""
+    if (program := shutil.which("Xvfb")) is None:
+        pytest.skip("there is no Xvfb")
+    reading, writing = os.pipe()
+    command = [program, "-displayfd", str(writing), "-screen", "0", "1600x900x24"]
+    server = subprocess.Popen(command, pass_fds=[writing], stderr=subprocess.DEVNULL)
+    os.close(writing)
+    with os.fdopen(reading) as printed:
+        yield f":{printed.readline().strip()}"
+    server.terminate()
+    server.wait()
 
 
 @pytest.fixture

@@ -33,16 +33,27 @@ def everywhere(tmp_path_factory) -> Path:
     return folder
 
 
+def compiled(tmp_path, system, source, *libraries):
+    """A host, compiled for another system."""
+    program = tmp_path / "host.exe"
+    zig = [sys.executable, "-m", "ziglang", "cc", "-target", system.zig]
+    flags = ["-O1", "-DUNCOUNTED", f"-I{HEADERS}", str(HERE / source), "-o", str(program)]
+    subprocess.run([*zig, *flags, "-lm", *libraries], check=True, capture_output=True)
+    return program
+
+
+def environment(tmp_path):
+    """Of wine: its files lie in a folder that goes."""
+    return {"WINEPREFIX": str(tmp_path / "wine"), "WINEDEBUG": "-all", "HOME": str(tmp_path)}
+
+
 def played(tmp_path, system, command, plugin):
     """What the host, compiled for another system, plays by a plug-in of it."""
-    program, lines, samples = (tmp_path / name for name in ("host.exe", "script", "samples"))
-    zig = [sys.executable, "-m", "ziglang", "cc", "-target", system.zig]
-    flags = ["-O1", "-DUNCOUNTED", f"-I{HEADERS}", str(HERE / "host.c"), "-o", str(program)]
-    subprocess.run([*zig, *flags, "-lm"], check=True, capture_output=True)
+    lines, samples = (tmp_path / name for name in ("script", "samples"))
+    program = compiled(tmp_path, system, "host.c")
     lines.write_text("".join(f"{line}\n" for line in ["0 play 1", *script(PHRASE)]))
     arguments = [str(plugin), "48000", "128", str(FRAMES), str(lines), str(samples)]
-    environment = {"WINEPREFIX": str(tmp_path / "wine"), "WINEDEBUG": "-all", "HOME": str(tmp_path)}
-    subprocess.run([*command, str(program), *arguments], env=environment, check=True)
+    subprocess.run([*command, str(program), *arguments], env=environment(tmp_path), check=True)
     return np.fromfile(samples, np.float32).reshape(-1, 2)
 
 
@@ -50,6 +61,27 @@ def played(tmp_path, system, command, plugin):
 def test_on_windows_it_plays_the_same(everywhere, library, tmp_path):
     samples = played(tmp_path, SYSTEMS[2], [WINE], everywhere / "windows" / "Yehu.clap")
     np.testing.assert_allclose(samples, by_library(library, PHRASE, FRAMES), atol=1e-6)
+
+
+@pytest.mark.skipif(WINE is None, reason="there is no wine")
+def test_on_windows_a_screen_reader_hears_what_has_the_focus_and_its_value(
+    everywhere, display, shown, tmp_path
+):
+    program = compiled(tmp_path, SYSTEMS[2], "windows_window.c", "-luser32")
+    plugin, number = everywhere / "windows" / "Yehu.clap", shown["/playing/vibrato"].number
+    done = subprocess.run(
+        [WINE, str(program), str(plugin), "ptttt41r9e", str(number)],
+        env={**environment(tmp_path), "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    chosen, *names, value = done.stdout.splitlines()
+    assert chosen == "Preset: pizzicato"
+    words = ("Articulation: ordinary", "Mapping: keyboard", "Tuning: equal")
+    assert tuple(names[:3]) == words
+    assert names[4:] == [f"Vibrato: {word}" for word in ("4", "41", "41 cents", "9", "41 cents")]
+    assert float(value) == 41.0
 
 
 @pytest.mark.skipif(QEMU is None or not ARM.is_dir(), reason="there is no qemu, or no C of ARM")

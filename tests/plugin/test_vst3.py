@@ -1,4 +1,8 @@
-"""The VST3 plug-in in hosts that others wrote: pedalboard and dawdreamer, both of JUCE."""
+"""The VST3 plug-in in hosts of others, all of JUCE: pedalboard, dawdreamer and pluginval."""
+
+import os
+import shutil
+import subprocess
 
 import mido
 import numpy as np
@@ -66,7 +70,7 @@ def test_a_preset_reaches_the_host_and_is_not_undone_by_it(plugin):
     assert raw(plugin, "Pizzicato").raw_value == 1.0
 
 
-def test_a_host_with_a_table_of_its_own_does_not_undo_a_preset(built):
+def test_a_host_with_a_table_of_its_own_does_not_undo_a_preset(built, shown):
     daw = pytest.importorskip("dawdreamer", reason="there is no dawdreamer")
     engine = daw.RenderEngine(48000, BLOCK)
     plugin = engine.make_plugin_processor("yehu", str(built / "Yehu.vst3"))
@@ -79,7 +83,8 @@ def test_a_host_with_a_table_of_its_own_does_not_undo_a_preset(built):
         return level_db(engine.get_audio().T[20000:28000])
 
     bowed = level()
-    plugin.set_parameter(numbers["Preset"], 7.0 / 12.0)
+    choices = shown["/preset"].choices
+    plugin.set_parameter(numbers["Preset"], choices.index("pizzicato") / (len(choices) - 1))
     for _ in range(3):
         assert level() < bowed - 20.0
         assert plugin.get_parameter_text(numbers["Pizzicato"]) == "1"
@@ -94,7 +99,9 @@ def test_a_host_with_a_table_of_its_own_does_not_undo_a_preset(built):
 def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, shown):
     import pedalboard
 
-    wanted = {"Output gain": 0.25, "Preset": 1.0, "Mapping": 1.0}
+    choices = shown["/preset"].choices
+    hall = choices.index("hall") / (len(choices) - 1)
+    wanted = {"Output gain": 0.25, "Preset": hall, "Mapping": 1.0}
     for name, unit in wanted.items():
         raw(plugin, name).raw_value = unit
     quiet = played(plugin)
@@ -103,7 +110,20 @@ def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, show
     assert raw(other, "Preset").string_value == "vibrato"
     other.raw_state = plugin.raw_state
     for name, unit in wanted.items():
-        assert raw(other, name).raw_value == pytest.approx(unit)
+        assert raw(other, name).raw_value == pytest.approx(unit, abs=1e-6)
     assert raw(other, "Room size").string_value == "25 m"  # by the preset, which is a hall
     assert raw(other, "Mapping").string_value == shown["/mapping"].choices[-1]
     assert level_db(played(other)) == pytest.approx(level_db(quiet), abs=0.5)
+
+
+@pytest.mark.skipif(shutil.which("pluginval") is None, reason="there is no pluginval")
+def test_pluginval_at_its_strictest_finds_nothing(built, display, tmp_path):
+    words = ["--validate", built / "Yehu.vst3", "--strictness-level", "10"]
+    done = subprocess.run(
+        [shutil.which("pluginval"), *words],
+        env={**os.environ, "DISPLAY": display, "HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout[-2000:]

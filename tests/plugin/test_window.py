@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+import time
 
 import numpy as np
 import pytest
@@ -14,23 +15,12 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
 ]
-PREV, NEXT = (40, 296), (150, 296)  # places in the chooser of presets
-WOOD = 0xE2, 0xBF, 0x8D
+PREV, NEXT = (40, 324), (150, 324)  # places in the chooser of presets
+WOOD, PAPER = (0xE2, 0xBF, 0x8D), (0xF7, 0xF3, 0xEA)
 TAB, RIGHT, END = 23, 114, 115  # codes of keys
-TRIES = 100
-
-
-@pytest.fixture(scope="module")
-def display():
-    """The name of an X display of its own."""
-    reading, writing = os.pipe()
-    command = [shutil.which("Xvfb"), "-displayfd", str(writing), "-screen", "0", "1600x900x24"]
-    server = subprocess.Popen(command, pass_fds=[writing], stderr=subprocess.DEVNULL)
-    os.close(writing)
-    with os.fdopen(reading) as printed:
-        yield f":{printed.readline().strip()}"
-    server.terminate()
-    server.wait()
+KEYS = {**dict(zip("1234567890-", range(10, 21), strict=True)), ".": 60, "p": 33}
+ENTER, ESCAPE, BACK = 36, 9, 22
+TRIES, BETWEEN = 100, 0.005  # s
 
 
 @pytest.fixture
@@ -98,6 +88,7 @@ def becomes(say, number, wanted):
         say("tick")
         if say(f"value {number}")[0] == wanted:
             return True
+        time.sleep(BETWEEN)
     return False
 
 
@@ -152,6 +143,30 @@ def test_sliders_are_moved_by_mouse_and_keys_and_have_a_usual_value(window, show
     for code in (TAB, TAB, TAB, END):
         window(f"key {code}")
     assert becomes(window, gain.number, gain.hi)
+
+
+def test_values_are_typed(window, shown):
+    vibrato, gain, pan = (shown[at] for at in ("/playing/vibrato", "/output/gain", "/room/pan"))
+    preset = shown["/preset"]
+
+    def press(*keys):
+        for key in keys:
+            window(f"key {KEYS.get(key, key)}")
+
+    window("open")
+    press("p")  # the next whose name begins so
+    after = [i for i, name in enumerate(preset.choices) if name[0] == "p" and i > preset.default]
+    assert becomes(window, preset.number, after[0])
+    press(*4 * [TAB], *"31", BACK, *"2.5", ENTER)
+    assert becomes(window, vibrato.number, 32.5)
+    assert window("play 1")[2] >= 1  # the host hears of it
+    press(ENTER, *"9", ESCAPE, ENTER, ENTER, ".", ENTER)  # no number
+    press(*3 * [TAB], *"-20", TAB)
+    assert becomes(window, gain.number, -20.0)
+    assert window(f"value {vibrato.number}")[0] == 32.5
+    window("click 330 248")  # the words of the last but one
+    press(*"-999", ENTER)
+    assert becomes(window, pan.number, pan.lo)
 
 
 def test_closed_it_has_no_timer_and_opens_again(window):

@@ -45,7 +45,11 @@ PLACES = {
     "DYNAMICS": "/playing/dynamics",
     "BOW_POSITION": "/playing/bow_position",
     "PRESSURE_OF_BOW": "/playing/pressure",
+    "BRILLIANCE": "/playing/brilliance",
     "ROOM_LEVEL": "/room/level",
+    "ROOM_DISTANCE": "/room/distance",
+    "ROOM_PAN": "/room/pan",
+    "SWAY": "/body/sway",
     "GAIN": "/output/gain",
 }
 OUTLINE = """\

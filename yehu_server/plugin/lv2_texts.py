@@ -27,6 +27,9 @@ PREFIXES = """\
 @prefix urid: <http://lv2plug.in/ns/ext/urid#> .
 """
 PLUGIN = """\
+<http://kx.studio/ns/lv2ext/control-input-port-change-request>
+    a lv2:Feature .
+
 <{uri}>
     a lv2:InstrumentPlugin , lv2:Plugin , doap:Project ;
     doap:name "Yehu" ;

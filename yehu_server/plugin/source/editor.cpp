@@ -15,20 +15,21 @@ enum : uint32_t {
 constexpr uint32_t STRING_COLOURS[] = {INNER, OUTER};
 
 /* Places in the picture. */
-constexpr float LOOP_X = 34, BRIDGE_X = 420, LANES[] = {104, 136}, MIDDLE = 120;
+constexpr float LOOP_X = 34, BRIDGE_X = 420, LANES[] = {84, 116}, MIDDLE = 100;
 constexpr float PANEL_X = 512, PANEL_WIDTH = 156;
 constexpr float GAUGES_Y = 112, GAUGE_HEIGHT = 33;
-constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 165, CHOOSER_WIDTH = 161, CHOOSERS_Y = 276, CHOOSER_HEIGHT = 40;
+constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 165, CHOOSER_WIDTH = 161, CHOOSERS_Y = 304, CHOOSER_HEIGHT = 40;
 constexpr float ARROW = 20, ZOOM_X = 628, ZOOM_Y = 20;
 
-constexpr float SLIDERS_X = 24, SLIDER_STEP = 119, SLIDER_WIDTH = 105, SLIDERS_Y = 187, SLIDER_HEIGHT = 28;
+constexpr float SLIDERS_X = 24, SLIDER_STEP = 119, SLIDER_WIDTH = 105, SLIDERS_Y = 187, SLIDER_HEIGHT = 28, WORDS_HEIGHT = 14;
 constexpr int IN_A_ROW = 4, DOUBLE_TICKS = 12;
 constexpr double WHEEL_STEP = 0.02;
 
-constexpr int SLID[] = {VIBRATO, VIBRATO_RATE, VIBRATO_DELAY, GAIN, DYNAMICS, PRESSURE_OF_BOW, BOW_POSITION, ROOM_LEVEL};
+constexpr int SLID[] = {VIBRATO,      VIBRATO_RATE, VIBRATO_DELAY, GAIN,          DYNAMICS, PRESSURE_OF_BOW,
+                        BOW_POSITION, BRILLIANCE,   ROOM_LEVEL,    ROOM_DISTANCE, ROOM_PAN, SWAY};
 constexpr int CHOSEN[] = {PRESET, ARTICULATION, MAPPING, TUNING};
 constexpr double MIN_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from one snapshot to the next */
-constexpr float SWING = 26, HAIR_LENGTH = 108;
+constexpr float SWING = 26, HAIR_LENGTH = 66;
 constexpr double SILENT = 1e-4, CERTAIN = 0.8, TWICE = 1.5; /* as the page has them */
 constexpr int PERCENTS[] = {75, 100, 125, 150, 200, 250, 300};
 
@@ -83,7 +84,7 @@ int Editor::chooser_at(float x, float y) const {
 void Editor::choose(int chooser, int choice) {
     const int most = parameters[CHOSEN[chooser]].steps;
     choice = choice < 0 ? 0 : choice > most ? most : choice;
-    focus = chooser, is_stale = true;
+    focus_on(chooser);
     if (choice != (int)instrument.value(CHOSEN[chooser])) host.edit(host.owner, CHOSEN[chooser], choice);
 }
 
@@ -93,11 +94,11 @@ int Editor::slider_at(float x, float y) const {
     return is_inside ? (int)column + IN_A_ROW * (int)row : -1;
 }
 
-void Editor::slide(int slider, double unit) {
-    const int parameter = SLID[slider];
-    const double value = from_unit(parameter, unit);
-    focus = CHOOSERS + slider, is_stale = true;
-    if (value != instrument.value(parameter)) host.edit(host.owner, parameter, value);
+void Editor::slide(int slider, double unit) { set(slider, from_unit(SLID[slider], unit)); }
+
+void Editor::set(int slider, double value) {
+    focus_on(CHOOSERS + slider);
+    if (value != instrument.value(SLID[slider])) host.edit(host.owner, SLID[slider], value);
 }
 
 /* To where the mouse is. */
@@ -109,15 +110,14 @@ void Editor::drag(int px, int) {
 
 void Editor::press(int px, int py) {
     const float scale = (float)wide / WIDTH, x = (float)px / scale, y = (float)py / scale;
-    const int chooser = chooser_at(x, y), before = held;
-    held = slider_at(x, y);
-    if (held >= 0) {
-        const bool is_double = held == before && ticks - pressed_at < DOUBLE_TICKS;
-        if (is_double) slide(held, to_unit(SLID[held], parameters[SLID[held]].usual));
-        else drag(px, py);
-        pressed_at = ticks;
-        if (is_double) held = -1;
-    } else if (chooser >= 0) {
+    const int chooser = chooser_at(x, y), slider = slider_at(x, y);
+    const bool is_double = slider >= 0 && slider == pressed && ticks - pressed_at < DOUBLE_TICKS;
+    end_typing(!is_double);
+    held = -1, pressed = is_double ? -1 : slider, pressed_at = ticks;
+    if (is_double) set(slider, parameters[SLID[slider]].usual);
+    else if (slider >= 0 && fmodf(y - SLIDERS_Y, SLIDER_HEIGHT) < WORDS_HEIGHT) focus_on(CHOOSERS + slider), begin_typing();
+    else if (slider >= 0) held = slider, drag(px, py);
+    else if (chooser >= 0) {
         const bool is_back = x - CHOOSERS_X - CHOOSER_STEP * (float)chooser < CHOOSER_WIDTH / 2;
         turn(px, py, is_back ? -1 : 1);
     } else if (y < 2 * ZOOM_Y && x > ZOOM_X - 12) zoom(wide >= 2 * WIDTH ? -1000 : 1);
@@ -132,8 +132,16 @@ void Editor::turn(int px, int py, int steps) {
 }
 
 void Editor::key(Key key) {
-    if (key == Key::LARGER || key == Key::SMALLER) return zoom(key == Key::LARGER ? 1 : -1);
-    if (key == Key::NEXT) return void((focus = (focus + 1) % (CHOOSERS + SLIDERS), is_stale = true));
+    const bool was_typing = length >= 0;
+    if (key == Key::BACK) {
+        if (length > 0) typed[--length] = 0, is_stale = true;
+        return;
+    }
+    end_typing(key != Key::ESCAPE);
+    if (key == Key::ENTER && !was_typing) begin_typing();
+    if (key == Key::ENTER || key == Key::ESCAPE) return;
+    if (key == Key::NEXT) return focus_on((focus + 1) % CONTROLS);
+    if (key == Key::PREVIOUS) return focus_on((focus + CONTROLS - 1) % CONTROLS);
     if (focus >= CHOOSERS) {
         const int slider = focus - CHOOSERS;
         const double unit = to_unit(SLID[slider], instrument.value(SLID[slider]));
@@ -148,6 +156,46 @@ void Editor::key(Key key) {
     case Key::LAST: return choose(focus, parameters[CHOSEN[focus]].steps);
     default: return;
     }
+}
+
+/* A number for a slider; for a chooser, the next name that begins so. */
+void Editor::type(char letter) {
+    const bool is_slider = focus >= CHOOSERS, is_digit = letter >= '0' && letter <= '9';
+    if (letter == ',') letter = '.';
+    const bool is_minus = letter == '-' && (length >= 0 || (is_slider && parameters[SLID[focus - CHOOSERS]].lo < 0));
+    if (is_slider && (is_digit || letter == '.' || is_minus)) {
+        if (length < 0) begin_typing();
+        if (length + 1 < LONGEST) typed[length++] = letter, typed[length] = 0, is_stale = true;
+    } else if (letter == '+' || letter == '=' || letter == '-') zoom(letter == '-' ? -1 : 1);
+    else if (!is_slider) {
+        const Parameter &p = parameters[CHOSEN[focus]];
+        const int now = (int)instrument.value(CHOSEN[focus]), count = p.steps + 1;
+        for (int i = 1; i < count; i++)
+            if (*p.choices[(now + i) % count] == letter) return choose(focus, (now + i) % count);
+    }
+}
+
+void Editor::begin_typing() {
+    if (focus >= CHOOSERS) *typed = 0, length = 0, is_stale = true;
+}
+
+void Editor::end_typing(bool counts) {
+    double value;
+    counts = counts && length > 0 && Settings::read(SLID[focus - CHOOSERS], typed, &value);
+    is_stale |= length >= 0;
+    length = -1;
+    if (counts) set(focus - CHOOSERS, value);
+}
+
+void Editor::focus_on(int control) { focus = control, is_stale = true; }
+
+/* What has the focus, and its value, for screen readers. */
+void Editor::name() {
+    const int parameter = focus < CHOOSERS ? CHOSEN[focus] : SLID[focus - CHOOSERS];
+    char text[160], value[64];
+    instrument.all().write(parameter, instrument.value(parameter), value, sizeof value);
+    snprintf(text, sizeof text, "%s: %s", parameters[parameter].name, length >= 0 ? typed : value);
+    window.name(text);
 }
 
 /* To the next larger or smaller size; far down is the size at first. */
@@ -174,6 +222,7 @@ void Editor::put() {
     if (canvas.width() == 0) return; /* there was no memory */
     draw();
     window.put(canvas.pixels(), canvas.width(), canvas.height());
+    if (is_stale) name();
     is_stale = false;
 }
 
@@ -203,7 +252,7 @@ bool Editor::follow() {
 
 void Editor::draw() {
     canvas.fill(PAPER);
-    canvas.box(12, 10, PANEL_X - 17, 234, 8, SURFACE);
+    canvas.box(12, 10, PANEL_X - 17, CHOOSERS_Y - 42, 8, SURFACE);
     draw_instrument();
     draw_gauges();
     for (int i = 0; i < SLIDERS; i++) draw_slider(i);
@@ -301,14 +350,16 @@ void Editor::draw_slider(int slider) {
     const float x = SLIDERS_X + SLIDER_STEP * (float)(slider % IN_A_ROW), y = SLIDERS_Y + SLIDER_HEIGHT * (float)(slider / IN_A_ROW);
     const float share = (float)to_unit(SLID[slider], slid[slider]);
     char value[64];
-    instrument.all().write(SLID[slider], slid[slider], value, sizeof value);
+    const bool has_focus = focus == CHOOSERS + slider, is_typed = has_focus && length >= 0;
+    if (is_typed) snprintf(value, sizeof value, "%s_", typed);
+    else instrument.all().write(SLID[slider], slid[slider], value, sizeof value);
     const char *name = parameters[SLID[slider]].name;
     const float value_width = canvas.text(0, 0, 11, value, INK, false), room = SLIDER_WIDTH - value_width - 6;
     const float size = fminf(11, room / canvas.text(0, 0, 1, name, INK, false));
-    canvas.text(x, y + 11, size, name, focus == CHOOSERS + slider ? OUTER : SOFT);
-    canvas.text(x + SLIDER_WIDTH - value_width, y + 11, 11, value, INK);
+    canvas.text(x, y + 11, size, name, has_focus ? OUTER : SOFT);
+    canvas.text(x + SLIDER_WIDTH - value_width, y + 11, 11, value, is_typed ? OUTER : INK);
     canvas.box(x, y + 16, SLIDER_WIDTH, 4, 2, LINE);
-    canvas.disc(x + SLIDER_WIDTH * share, y + 18, 5, focus == CHOOSERS + slider ? OUTER : SOFT);
+    canvas.disc(x + SLIDER_WIDTH * share, y + 18, 5, has_focus ? OUTER : SOFT);
 }
 
 void Editor::draw_chooser(int chooser) {

@@ -1,5 +1,5 @@
-/* The plug-in's own window: strings, bow and fingers as they move, what is heard, and preset,
- * articulation, mapping and tuning to choose. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
+/* The plug-in's own window: strings, bow and fingers as they move, what is heard, and parameters to
+ * choose, to slide and to type. It takes snapshots of the instrument (`yehu_snapshot`) on the host's main thread, and
  * is nothing while it is closed: no memory, window or timer.
  */
 #ifndef YEHU_EDITOR_HPP
@@ -20,7 +20,7 @@ struct EditorHost {
 
 class Editor {
 public:
-    static constexpr int WIDTH = 680, HEIGHT = 330, INTERVAL_MS = 33;
+    static constexpr int WIDTH = 680, HEIGHT = 358, INTERVAL_MS = 33;
     static constexpr const char *NAME = "Yehu";
 
     Editor(const Instrument &instrument, const EditorHost &host) : instrument(instrument), host(host) {}
@@ -40,9 +40,10 @@ public:
     void drag(int x, int y);
     void turn(int x, int y, int steps);
     void key(Key key);
+    void type(char letter);
 
 private:
-    static constexpr int CHOOSERS = 4, SLIDERS = 8, SHAPES = 8, POINTS = 64, STRINGS = 2;
+    static constexpr int CHOOSERS = 4, SLIDERS = 12, CONTROLS = CHOOSERS + SLIDERS, LONGEST = 12, SHAPES = 8, POINTS = 64, STRINGS = 2;
 
     bool follow();
     void put();
@@ -56,7 +57,12 @@ private:
     int chooser_at(float x, float y) const;
     int slider_at(float x, float y) const;
     void slide(int slider, double unit);
+    void set(int slider, double value);
     void choose(int chooser, int choice);
+    void focus_on(int control);
+    void begin_typing();
+    void end_typing(bool counts);
+    void name();
     void zoom(int percent);
 
     const Instrument &instrument;
@@ -65,7 +71,9 @@ private:
     Canvas canvas;
     int wide = WIDTH, high = HEIGHT;
     bool is_stale = true, is_at_rest = false;
-    int held = -1, pressed_at = 0, ticks = 0; /* of sliders: the one that the mouse moves, where, and when */
+    int held = -1, pressed = -1, pressed_at = 0, ticks = 0; /* of sliders: which the mouse moves; pressed last, and when */
+    char typed[LONGEST] = ""; /* a value for the slider in focus, */
+    int length = -1;          /* of so many letters; -1: none is typed */
     double slid[SLIDERS] = {};
     int focus = 0, chosen[CHOOSERS] = {-1, -1, -1, -1};
     struct yehu_snapshot seen = {};

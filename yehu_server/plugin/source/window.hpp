@@ -9,7 +9,7 @@
 namespace yehu {
 
 class Editor;
-enum class Key { LEFT, RIGHT, UP, DOWN, NEXT, FIRST, LAST, LARGER, SMALLER };
+enum class Key { LEFT, RIGHT, UP, DOWN, NEXT, PREVIOUS, FIRST, LAST, ENTER, ESCAPE, BACK };
 
 class Window {
 public:
@@ -21,6 +21,8 @@ public:
     void resize(int width, int height);
     void show(bool is_shown);
     void put(const uint32_t *pixels, int width, int height);
+    /* What screen readers say of it; on X11 nothing, where they hear of windows by their toolkits only. */
+    void name(const char *text);
     /* Report what has happened, where the system does not by itself. */
     void poll();
     /* Whether the system calls `Editor::tick`; else a timer of the host has to. */

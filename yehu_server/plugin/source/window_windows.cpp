@@ -16,8 +16,8 @@ constexpr UINT_PTR TIMER = 1;
 bool key_of(WPARAM code, Key *key) {
     const struct { WPARAM code; Key key; } known[] = {
         {VK_LEFT, Key::LEFT},       {VK_UP, Key::UP},     {VK_RIGHT, Key::RIGHT},   {VK_DOWN, Key::DOWN},
-        {VK_HOME, Key::FIRST},      {VK_END, Key::LAST},  {VK_TAB, Key::NEXT},      {VK_ADD, Key::LARGER},
-        {VK_OEM_PLUS, Key::LARGER}, {VK_SUBTRACT, Key::SMALLER}, {VK_OEM_MINUS, Key::SMALLER},
+        {VK_HOME, Key::FIRST},      {VK_END, Key::LAST},  {VK_TAB, Key::NEXT},      {VK_RETURN, Key::ENTER},
+        {VK_ESCAPE, Key::ESCAPE},   {VK_BACK, Key::BACK},
     };
     for (const auto &each : known)
         if (each.code == code) return *key = each.key, true;
@@ -85,6 +85,9 @@ void Window::put(const uint32_t *pixels, int width, int height) {
     InvalidateRect(native->window, nullptr, FALSE);
 }
 
+/* Which is the window's own name, by which Windows reports it and its changes to screen readers. */
+void Window::name(const char *text) { SetWindowTextA(native->window, text); }
+
 void Window::poll() {}
 
 void Window::Native::paint() const {
@@ -122,7 +125,10 @@ LRESULT CALLBACK Window::Native::receive(HWND window, UINT message, WPARAM one, 
         return 0;
     case WM_KEYDOWN:
         if (!key_of(one, &key)) break;
-        native->editor->key(key);
+        native->editor->key(key == Key::NEXT && GetKeyState(VK_SHIFT) < 0 ? Key::PREVIOUS : key);
+        return 0;
+    case WM_CHAR:
+        if (one < 128) native->editor->type((char)one);
         return 0;
     }
     return DefWindowProcA(window, message, one, two);

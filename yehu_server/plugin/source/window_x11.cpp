@@ -45,16 +45,21 @@ const Xcb *library() {
     return has_all ? &made : nullptr;
 }
 
-/* What the keys of a keyboard mean, by X's numbers. */
-bool key_of(uint32_t symbol, Key *key) {
+/* What the keys of a keyboard mean, by X's numbers; those of letters and of the keypad are ASCII's. */
+constexpr uint32_t KEYPAD = 0xFF80, KEYPAD_FIRST = 0xFFAA, KEYPAD_LAST = 0xFFB9;
+
+bool is_of_keypad(uint32_t symbol) { return symbol >= KEYPAD_FIRST && symbol <= KEYPAD_LAST; }
+
+void press_key(Editor &editor, uint32_t symbol) {
     const struct { uint32_t symbol; Key key; } known[] = {
-        {0xFF51, Key::LEFT}, {0xFF52, Key::UP},    {0xFF53, Key::RIGHT}, {0xFF54, Key::DOWN},
-        {0xFF50, Key::FIRST}, {0xFF57, Key::LAST}, {0xFF09, Key::NEXT},  {'+', Key::LARGER},
-        {'=', Key::LARGER},  {0xFFAB, Key::LARGER}, {'-', Key::SMALLER}, {0xFFAD, Key::SMALLER},
+        {0xFF51, Key::LEFT},  {0xFF52, Key::UP},       {0xFF53, Key::RIGHT}, {0xFF54, Key::DOWN},
+        {0xFF50, Key::FIRST}, {0xFF57, Key::LAST},     {0xFF09, Key::NEXT},  {0xFE20, Key::PREVIOUS},
+        {0xFF0D, Key::ENTER}, {0xFF8D, Key::ENTER},    {0xFF1B, Key::ESCAPE}, {0xFF08, Key::BACK},
     };
     for (const auto &each : known)
-        if (each.symbol == symbol) return *key = each.key, true;
-    return false;
+        if (each.symbol == symbol) return editor.key(each.key);
+    if (is_of_keypad(symbol)) symbol -= KEYPAD;
+    if (symbol < 128) editor.type((char)symbol);
 }
 } /* namespace */
 
@@ -148,6 +153,8 @@ void Window::put(const uint32_t *pixels, int width, int height) {
     native->x->flush(native->connection);
 }
 
+void Window::name(const char *) {}
+
 void Window::poll() {
     while (native) {
         xcb_generic_event_t *event = native->x->poll_for_event(native->connection);
@@ -164,10 +171,10 @@ void Window::poll() {
         if (kind == XCB_KEY_PRESS && native->keys) {
             const int each = native->keys->keysyms_per_keycode, at = each * (press->detail - native->first);
             const xcb_keysym_t *symbols = native->x->get_keyboard_mapping_keysyms(native->keys);
-            Key key;
-            if (at + 1 < native->x->get_keyboard_mapping_keysyms_length(native->keys) &&
-                (key_of(symbols[at], &key) || (each > 1 && key_of(symbols[at + 1], &key))))
-                native->editor->key(key);
+            if (at >= 0 && at + 1 < native->x->get_keyboard_mapping_keysyms_length(native->keys)) {
+                const bool is_second = each > 1 && (press->state & XCB_MOD_MASK_SHIFT || is_of_keypad(symbols[at + 1]));
+                press_key(*native->editor, symbols[at + (is_second && symbols[at + 1])]);
+            }
         }
         free(event);
     }

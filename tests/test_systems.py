@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+import sys
+import threading
 from pathlib import Path
 from typing import Any
 
 import pytest
 from llvmlite import binding, ir
 
-from yehu_server.system import clocks
+from yehu_server.system import clocks, processes
 
 ROOT = Path(__file__).parents[1]
 ASKS = re.compile(
@@ -38,3 +40,16 @@ def test_clocks_of_every_system_are_code_that_llvm_takes(read: Any):
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     builder.ret(read(builder))
     binding.parse_assembly(str(module)).verify()
+
+
+def test_on_windows_no_wait_keeps_handlers_of_signals_from_running(monkeypatch: pytest.MonkeyPatch):
+    waits = []
+
+    class Ended(threading.Event):
+        def wait(self, timeout: float | None = None) -> bool:
+            waits.append(timeout)
+            return len(waits) > 2
+
+    monkeypatch.setattr(sys, "platform", "win32")
+    processes.wait_for(Ended())
+    assert waits == [processes.SIGNALS_EVERY_S] * 3

@@ -16,7 +16,7 @@ pytestmark = [
     pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
 ]
 PREV, NEXT = (40, 324), (150, 324)  # places in the chooser of presets
-WOOD, PAPER = (0xE2, 0xBF, 0x8D), (0xF7, 0xF3, 0xEA)
+WOOD = 0xE2, 0xBF, 0x8D
 TAB, RIGHT, END = 23, 114, 115  # codes of keys
 KEYS = {**dict(zip("1234567890-", range(10, 21), strict=True)), ".": 60, "p": 33}
 ENTER, ESCAPE, BACK = 36, 9, 22

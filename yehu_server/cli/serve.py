@@ -36,7 +36,7 @@ from yehu_server.cli.terminal import (
 from yehu_server.errors import YehuError
 from yehu_server.live.network import lan_address, lan_interface
 from yehu_server.system import processes
-from yehu_server.system.processes import on_termination
+from yehu_server.system.processes import on_termination, wait_for
 
 if TYPE_CHECKING:
     from yehu_server.live.page.pages import PageOptions
@@ -134,7 +134,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
         log.debug("the receive buffer for OSC has %d kB", buffer_kb)
         log.info("Ctrl-C ends")
         with _status_line(server):
-            ending.requested.wait(arguments.duration)
+            wait_for(ending.requested, arguments.duration)
     finally:
         server.stop()
     return 0 if server.is_whole else 2

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Sequence
 from typing import IO, Any
 
 PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
 F_SETPIPE_SZ = 1031  # of Linux
 LOWER, LOWEST = 5, 19  # niceness
+SIGNALS_EVERY_S = 0.1  # how often handlers of signals have their turn, on Windows
 # Of Windows: BELOW_NORMAL_PRIORITY_CLASS, IDLE_PRIORITY_CLASS.
 CLASSES = {LOWER: 0x4000, LOWEST: 0x40}
 SCREENS = {"DISPLAY", "WAYLAND_DISPLAY"}  # where a program with windows may open them
@@ -73,6 +76,16 @@ def on_termination(handler: Callable[..., object]) -> None:
         signal.signal(signal.SIGBREAK, handler)
     elif signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
         signal.signal(signal.SIGHUP, handler)
+
+
+def wait_for(event: threading.Event, seconds: float | None = None) -> None:
+    """Wait in the main thread; handlers of signals run meanwhile (on Windows: between waits)."""
+    if sys.platform == "win32":
+        end = math.inf if seconds is None else time.monotonic() + seconds
+        while time.monotonic() < end and not event.wait(SIGNALS_EVERY_S):
+            pass
+    else:
+        event.wait(seconds)
 
 
 def terminate_main_thread() -> None:

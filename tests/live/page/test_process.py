@@ -16,7 +16,7 @@ def test_the_module_is_looked_for_and_compiled_only_once_a_page_is_opened(monkey
     monkeypatch.setattr(process, "Child", child)
     for name in ("SharedView", "PageSockets", "check"):
         monkeypatch.setattr(process, name, Mock())
-    monkeypatch.setattr(process.asyncio, "new_event_loop", Mock())
+    monkeypatch.setattr(process.asyncio, "SelectorEventLoop", Mock())
     order = {
         "socket": socket.socket().detach(),
         "allowed": [],

@@ -45,7 +45,8 @@ class Pages:
         # What pages are sent of the server, and whether they can compute the sound themselves.
         self._status: dict[str, Any] = {"sounds": PREPARING}
         self._sockets = PageSockets(SharedView(order["memory"]), order["rigs"], self._status)
-        self._loop = asyncio.new_event_loop()
+        # Windows' usual one ties the socket to its process: the next one could not accept.
+        self._loop = asyncio.SelectorEventLoop()
         self._finder: Child | None = None
 
     def _prepare(self) -> None:

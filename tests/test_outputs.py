@@ -18,7 +18,8 @@ def _here(monkeypatch, tmp_path):
 def files(tmp_path) -> dict[str, Path]:
     """Files that commands read."""
     texts = {"w.toml": MAPPING, "below.toml": MAPPING, "p.toml": "version = 1\n[values]\n"}
-    texts["s.scl"] = "! s.scl\ns\n 1\n 2/1\n"
+    steps = "".join(f" {100.0 * step}\n" for step in range(1, 13))
+    texts["s.scl"] = f"! s.scl\ns\n 12\n{steps}"
     texts["k.kbm"] = "0\n0\n127\n60\n69\n440.0\n0\n"
     for name, text in texts.items():
         (tmp_path / name).write_text(text)

@@ -1,5 +1,6 @@
 """What a cluster's pickles name is neither run nor takes memory or time."""
 
+import io
 import pickle
 
 import pytest
@@ -25,8 +26,11 @@ def test_an_exception_with_lists_of_lists_is_soon_shown(make: bytes) -> None:
 
 
 def test_of_texts_and_names_so_much_is_kept_and_small_numbers_stay() -> None:
-    data = pickle.dumps(ForeignError("x" * 10_000, 3, 10**4000, None, *["y"] * 1000))
-    error = plain(data.replace(b"ForeignError", b"ForeignErrox"))
+    pickled = io.BytesIO()
+    pickler = pickle.Pickler(pickled)
+    pickler.dispatch_table = {}  # where Dask was imported, exceptions are written in another way
+    pickler.dump(ForeignError("x" * 10_000, 3, 10**4000, None, *["y"] * 1000))
+    error = plain(pickled.getvalue().replace(b"ForeignError", b"ForeignErrox"))
     assert error.args[:4] == ("x" * LONGEST, 3, "int", "NoneType")
     assert len(error.args) == LONGEST
     assert len(plain(b"cx\n" + b"n" * 10_000 + b"\n.").__name__) == LONGEST

@@ -145,6 +145,9 @@ TUNE = sounding(67, 69, 71, 72, 74, 71, 69, 67)
 BASS = sounding(36, 43, 36, 43, 41, 36, 43, 36)
 DRONE = sounding(*[67] * 8)
 CHORDS = [NoteSpan(at, at + 1.0, (60.0 + step,)) for at in range(8) for step in (0, 4, 7)]
+HELD = [
+    NoteSpan(at, at + 2.0, (key,)) for at in (0, 2, 4, 6) for key in (60.0, 64.0, 67.0, 71.0, 74.0)
+]
 DOUBLE_STOP = [TUNE[0], *TUNE]
 WIDE = sounding(40, 60, 80, 100, 40, 60, 80, 100)
 BRIEF = sounding(79, 81)
@@ -157,6 +160,9 @@ def test_the_tune_is_found_among_what_accompanies_it():
         "over a bass": ([BASS, TUNE], ["a", "b"], 1),
         "beside a drone": ([DRONE, TUNE], ["a", "b"], 1),
         "over chords": ([CHORDS, TUNE], ["a", "b"], 1),
+        "named, over held chords": ([HELD, BASS, TUNE], ["Piano", "Bass", "Lead"], 2),
+        "over held chords": ([BASS, HELD, TUNE], ["Bass", "Piano", "Violin"], 2),
+        "none but chords": ([BASS, HELD], ["Bass", "Piano"], 1),
         "with a double stop": ([DOUBLE_STOP, TUNE], ["a", "b"], 0),
         "after a few notes": ([BRIEF, TUNE], ["a", "b"], 1),
         "beside leaps": ([WIDE, TUNE], ["a", "b"], 1),

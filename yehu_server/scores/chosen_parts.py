@@ -61,21 +61,28 @@ def default_midi_part(score: Score, within: NoteRange = YEHU) -> Score:
 
     Parts that take turns stay together.
     """
-    if len(score.parts) < 2:
+    tune = tune_of(score, within)
+    if tune is None:
         return score
     names = [part.name for part in score.parts]
-    parts: list[list[NoteSpan]] = [[] for _ in names]
+    others = [name for at, name in enumerate(names) if at != tune]
+    line = f"plays {names[tune]}; also there: {listed(others, MAX_NAMED)} ({ONE_BY_ONE})"
+    return replace(_only(score, [score.parts[tune]]), remarks=(*score.remarks, line))
+
+
+def tune_of(score: Score, within: NoteRange = YEHU) -> int | None:
+    """The number, from 0, of the part of a score of MIDI that carries the tune; None if all do."""
+    if len(score.parts) < 2:
+        return None
+    parts: list[list[NoteSpan]] = [[] for _ in score.parts]
     find = finder_of(score.parts)
     for note in notes_of(score):
         at = find(note.channel, score.events[note.begins].track)
         if at is not None:
             parts[at].append(NoteSpan(note.start_s, note.end_s, (float(note.key),)))
-    tune = melodic_part(names, parts, within)
-    if tune is None or take_turns(parts):
-        return score
-    others = [name for at, name in enumerate(names) if at != tune]
-    line = f"plays {names[tune]}; also there: {listed(others, MAX_NAMED)} ({ONE_BY_ONE})"
-    return replace(_only(score, [score.parts[tune]]), remarks=(*score.remarks, line))
+    if take_turns(parts):
+        return None
+    return melodic_part([part.name for part in score.parts], parts, within)
 
 
 def others_line(written: Written, plays: Sequence[int]) -> str:

@@ -24,7 +24,7 @@ from yehu_server.core.player.parameter_indices import VELOCITY
 from yehu_server.errors import ScoreError
 from yehu_server.playing.sources import RESERVED
 from yehu_server.scores.capture import Capture, read_capture
-from yehu_server.scores.chosen_parts import finder_of
+from yehu_server.scores.chosen_parts import finder_of, tune_of
 from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
 from yehu_server.scores.score import (
@@ -86,7 +86,9 @@ def read_as_written(
     score = read_score(path, song=song)
     with errors_name(path):
         written, lost = written_of_midi(score, tempo)
-    return replace(written, warnings=score.warnings, remarks=score.remarks), lost
+    # Chords are single lines here, and may look like a tune.
+    tune = tune_of(score) if len(score.parts) == len(written.parts) else None
+    return replace(written, warnings=score.warnings, remarks=score.remarks, tune=tune), lost
 
 
 def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, dict[str, int]]:

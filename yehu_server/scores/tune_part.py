@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from itertools import pairwise
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.scores.octaves import NoteSpan, octaves_of
@@ -35,20 +35,21 @@ def melodic_part(
 ) -> int | None:
     """Return the number, from 0, of the first part that is a melody; else the first with notes.
 
-    A part that is named as one goes before others, and most of a melody fits `within`. Names and
-    parts are those of all parts: the notes of each, in any one unit of time.
+    A part that is named as one goes before others, one that is named as an accompaniment after
+    them, and most of a melody fits `within`. Names and parts are those of all parts: the notes of
+    each, in any one unit of time.
     """
     longest = max(map(_sounds, parts), default=0.0)
     sounding = [at for at, notes in enumerate(parts) if notes]
     may_be = [at for at in sounding if not ACCOMPANIES.search(names[at])]
     tunes = [at for at in may_be if _is_tune(parts[at], longest, within)]
     named = [at for at in tunes if NAMED.search(names[at])]
-    return next(iter([*named, *tunes, *sounding]), None)
+    return next(iter([*named, *tunes, *may_be, *sounding]), None)
 
 
 def take_turns(parts: Sequence[Sequence[NoteSpan]]) -> bool:
     """Whether no two of the parts sound at once, so that one instrument can play them all."""
-    sounds = [*map(_sounds, parts)]
+    sounds = [sum(note.end - note.begin for note in notes) for notes in parts]
     if sum(sound > 0.0 for sound in sounds) < 2:
         return True
     placed = [(note.begin, note.end, at) for at, notes in enumerate(parts) for note in notes]
@@ -72,7 +73,12 @@ def take_turns(parts: Sequence[Sequence[NoteSpan]]) -> bool:
 
 
 def _sounds(notes: Sequence[NoteSpan]) -> float:
-    return sum(note.end - note.begin for note in notes)
+    """For how long there is a note: one of a chord's counts, else chords are the longest part."""
+    sounds, until = 0.0, float("-inf")
+    for note in sorted(notes, key=attrgetter("begin")):
+        sounds += max(0.0, note.end - max(note.begin, until))
+        until = max(until, note.end)
+    return sounds
 
 
 def _is_tune(notes: Sequence[NoteSpan], longest: float, within: NoteRange) -> bool:

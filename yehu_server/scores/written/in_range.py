@@ -23,8 +23,10 @@ def default_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
     sounding = [number for number, part in enumerate(written.parts) if part.notes]
     if len(sounding) < 2:
         return sounding
-    parts = [[span_of(note, within) for note in part.notes] for part in written.parts]
-    tune = melodic_part(written.names, parts, within)
+    tune = written.tune
+    if tune is None:
+        parts = [[span_of(note, within) for note in part.notes] for part in written.parts]
+        tune = melodic_part(written.names, parts, within)
     return [] if tune is None else [tune]
 
 

@@ -274,6 +274,7 @@ class Written:
     keys: tuple[KeySignature, ...] = ()  # in order of beats; empty where none is written
     # One line each, which a player should know and which are no fault of the score.
     remarks: tuple[str, ...] = ()
+    tune: int | None = None  # the part with the tune, from 0, where lines alone do not show it
 
     @property
     def not_understood(self) -> list[str]:

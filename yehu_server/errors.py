@@ -70,7 +70,6 @@ _OTHER_WORDS = {
     "--output": "out outfile wav",
     "--overwrite": "force",
     "--part": "track voice",
-    "--range": "transpose",
     "--rate": "sample-rate samplerate sr",
     "--room": "reverb echo hall ambience",
     "--subtype": "bits bit-depth bitdepth",

@@ -81,6 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
     if not arguments.json and not arguments.quiet:
         made = len(lines) - len(failed) - len(current)
         counts = f"{made} rendered, {len(current)} up to date, {len(failed)} failed"
+        if remarked := sum(bool(line.get("warnings")) for line in lines):
+            counts += f"; {build_records.NAME} says what was chosen or moved in {remarked}"
         print_result(f"{arguments.output}: {counts}")
     return 1 if failed else 0
 

@@ -203,7 +203,8 @@ def test_a_rate_the_named_device_does_not_have_is_refused_once_and_no_file_left(
     run = command(jackd, "serve", *words, *files(tmp_path))
     assert run.returncode == 2
     *others, line = run.stderr.splitlines()
-    assert line == f"yehu-server: {DEVICE} does not run at 44100 Hz (its own rate is 48000 Hz)"
+    own = "its own rate is 48000 Hz: --rate 48000"
+    assert line == f"yehu-server: {DEVICE} does not run at 44100 Hz ({own})"
     assert not any("44100 Hz" in other for other in others)
     assert not list(tmp_path.iterdir())
 

@@ -206,7 +206,7 @@ def _reason(sounddevice: Any, device: AudioDevice, order: Message, error: Except
     if getattr(error, "args", (0, 0))[-1] == sounddevice._lib.paInvalidSampleRate:  # noqa: SLF001
         return (
             f"{device.full_name} does not run at {order['rate']:g} Hz "
-            f"(its own rate is {device.rate:g} Hz)"
+            f"(its own rate is {device.rate:g} Hz: --rate {device.rate:g})"
         )
     return f"{device.full_name}: {str(error).replace(chr(10), ' ')}"
 

@@ -50,6 +50,7 @@ class CallContext:
     counts: Counts = field(default_factory=Counts)
     writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
     wrong_addresses: set[str] = field(default_factory=set)  # whose errors were logged
+    unlogged: int = 0  # errors since the last that was logged
     logged_errors: TokenBucket = field(
         default_factory=lambda: TokenBucket(
             limits.LOGGED_ERRORS_A_SECOND, limits.LOGGED_ERRORS_AT_ONCE
@@ -73,9 +74,12 @@ class CallContext:
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         """Send a peer the reason why its message to an address was refused."""
         self.counts.errors += 1
+        self.unlogged += 1
         if self._is_new_error(address):
             reason = reason if isinstance(reason, str) else reason()
-            self.log(f"OSC from {peer.host}: {shortened(address)}: {shortened(reason)}")
+            more = f" ({self.unlogged - 1} errors before it not shown)" * (self.unlogged > 1)
+            self.log(f"OSC from {peer.host}: {shortened(address)}: {shortened(reason)}{more}")
+            self.unlogged = 0
         self.clients.send_error(peer, address, reason)
 
     def _is_new_error(self, address: str) -> bool:

@@ -133,7 +133,7 @@ def near(address: str, parts: int, known: Iterable[str]) -> str:
         hint = near_address(
             PREFIX + address[: limits.PATTERN], [PREFIX + one for one in known], 0.8
         )
-        return f"unknown address (all begin with {PREFIX}/){hint}"
+        return f"unknown address (all but learned ones begin with {PREFIX}/){hint}"
     group, own = split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
     try:
         check_part(group, parts)

@@ -112,6 +112,19 @@ def test_the_manifest_tells_what_became_of_each(once):
     assert (line["notes"], line["out_of_range"], line["warnings"]) == (1, 0, [])
 
 
+@pytest.mark.parametrize("quiet", [[], ["--quiet"]])
+def test_the_manifest_tells_what_was_moved_and_the_last_line_where_that_is(
+    command, tmp_path, quiet
+):
+    tune(tmp_path / "in" / "low.mid", 50)
+    words = ("render", tmp_path / "in", "-o", tmp_path / "out", *DRY, "--jobs", 1, *quiet)
+    code, out, _ = command(*words)
+    assert code == 0
+    assert "moved to fit" in manifest(tmp_path / "out")["low.mid"]["warnings"][0]
+    shown = "manifest.jsonl says what was chosen or moved in 1"
+    assert (shown in out) is not bool(quiet)
+
+
 def test_each_sound_is_that_of_the_score_rendered_alone(once, command, tmp_path):
     alone = tmp_path / "alone.wav"
     assert command("render", once[0] / "in" / "x" / "Y.kar", "-o", alone, *DRY)[0] == 0

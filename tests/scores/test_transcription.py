@@ -17,16 +17,35 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
 from yehu_server.scores.midi_export import midi_file
-from yehu_server.scores.reading import read_written
+from yehu_server.scores.reading import read_any, read_written
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.transcription import (
     read_as_written,
     written_of_midi,
 )
+from yehu_server.scores.written.in_range import default_parts
 from yehu_server.scores.written.performed import performed
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 RATE = 48000.0
+
+
+def test_beside_chords_the_part_that_a_render_plays_is_the_one_that_is_shown(tmp_path):
+    def track(name, channel, *chords):
+        messages = [mido.MetaMessage("track_name", name=name)]
+        for chord in chords:
+            for kind in ("note_on", "note_off"):
+                messages += [mido.Message(kind, channel=channel, note=key) for key in chord]
+                messages[-len(chord)].time = 480 if kind == "note_off" else 0
+        return mido.MidiTrack(messages)
+
+    path = tmp_path / "band.mid"
+    chords = [(60, 64, 67, 71, 74), (62, 65, 69, 72, 76)] * 4  # their highest notes move
+    tracks = [track("Piano", 0, *chords), track("Violin", 1, *zip(range(67, 75), strict=True))]
+    mido.MidiFile(tracks=tracks).save(path)
+    written, _ = read_as_written(path)
+    assert default_parts(written) == [1]
+    assert read_any(path).remarks[0].startswith("plays Violin; also there: Piano")
 
 
 def test_a_midi_file_becomes_the_tune_that_it_was_made_from():

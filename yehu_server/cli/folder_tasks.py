@@ -82,7 +82,7 @@ def _made(task: Task, work: Path, report_progress: ProgressCallback) -> Line:
     check_distinct({"-o": entry.target}, [entry.source])
     own = argparse.Namespace(**vars(options))
     own.midi, own.output = [entry.source], work
-    own.overwrite, own.json, own.jobs = True, False, 1
+    own.overwrite, own.quiet, own.json, own.jobs = True, False, False, 1
     own.format = options.format or "wav"
     printed = io.StringIO()
     with contextlib.redirect_stderr(printed):

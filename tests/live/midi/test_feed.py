@@ -8,6 +8,7 @@ import time
 import numpy as np
 import pytest
 
+from yehu_server.core.engine.event_dispatch import LEAST_COST
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.mailbox import BUDGET_PER_FRAME, MIDI_INPUTS, SMALL_RING
 from yehu_server.core.engine.rig import ring_place
@@ -131,6 +132,6 @@ def test_threads_of_several_inputs_lose_nothing(shared):
     out = np.zeros(64, np.float32)
     while any(thread.is_alive() for thread in threads):
         instrument.process(out)
-    for _ in range(1 + 2 * count // (BUDGET_PER_FRAME * len(out))):
+    for _ in range(1 + LEAST_COST * 2 * count // (BUDGET_PER_FRAME * len(out))):
         instrument.process(out)
     assert instrument.midi["messages"] == 2 * count

@@ -52,6 +52,30 @@ def test_a_client_names_the_port_it_listens_on(live):
     assert listens.all() == []
 
 
+def test_who_named_a_port_is_answered_there_too(live):
+    speaks, listens, other = live.client(), live.client(), live.client()
+    speaks.send("/subscribe", 30, listens.port)
+    listens.wait_for("/subscribed")
+    listens.all()
+    for one in (speaks, other):  # as does another of its host, such as a command of a shell
+        one.send("/playing/volum", 1.0)
+        for hears in (one, listens):
+            assert hears.wait_for("/error")[0] == "/yehu/playing/volum"
+        one.send("/ping", 5)
+        assert listens.wait_for("/pong") == one.wait_for("/pong") == [5]
+        one.send("/playing/volume", 99.0)
+        assert listens.wait_for("/playing/volume") == one.wait_for("/playing/volume") == [1.0]
+    other.send("/subscribe", 30)  # it listens for itself from now on
+    other.wait_for("/subscribed")
+    other.send("/ping", 6)
+    other.wait_for("/pong")
+    speaks.send("/unsubscribe", listens.port)
+    listens.wait_for("/unsubscribed")
+    speaks.send("/ping", 7)
+    speaks.wait_for("/pong")
+    assert not [one for one in listens.all() if one.address == "/yehu/pong"]
+
+
 def test_who_subscribes_and_hangs_up_at_once_is_no_subscriber(live, until, wire):
     stream = live.stream()
     packets = [wire.message("/yehu/note/off", 67)] * 3000

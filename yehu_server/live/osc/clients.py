@@ -6,7 +6,7 @@ All is sent from the listening port, each message by itself: Pure Data does not 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from yehu_server.errors import shortened
 from yehu_server.live import traffic_limits as limits
@@ -36,6 +36,7 @@ class Clients:
     def __init__(self, values: Values, prefix: str, status: Status = lambda _group: {}) -> None:
         self.prefix = prefix
         self._clients: dict[Peer, Subscriber] = {}
+        self._named: dict[Peer, Peer] = {}  # subscribers at ports of their own: who named them last
         self._publisher = ChangePublisher(values, status, prefix)
         self.read = self._publisher.read
         self._round: Iterator[None] | None = None  # what is left of a round
@@ -65,12 +66,43 @@ class Clients:
         for peer, client in list(self._clients.items()):
             until = max(client.until, client.muted_until, client.last_error + forgiven_s)
             if until <= now and client.is_idle:
-                del self._clients[peer]
+                self.forget(peer)
 
     # -- what clients are sent ---------------------------------------------------------------
 
-    def echo(self, peer: Peer, addresses: Iterable[str]) -> None:
+    def answered(self, peer: Peer) -> list[Peer]:
+        """Return whom answers to a peer are sent to: itself, and those who listen for it.
+
+        These are the subscribers at ports that it named. For one that does not subscribe, such as a
+        command of a shell, it is the only one that its host named. So Max hears the answers, whose
+        senders and receivers have different ports.
+        """
+        if not self._named:
+            return [peer]
+        now = time.monotonic()
+        named = {
+            listener: sender
+            for listener, sender in self._named.items()
+            if listener.host == peer.host
+            and type(listener) is type(peer)
+            and self._clients[listener].subscribes(now)
+        }
+        own = [listener for listener, sender in named.items() if sender == peer]
+        if not own and len(named) == 1 and not self.is_subscribed(peer):
+            own = list(named)
+        return [peer, *own]
+
+    def send(self, peer: Peer, packet: bytes) -> None:
+        """Send a peer an answer."""
+        for one in self.answered(peer):
+            one.send(packet)
+
+    def echo(self, peer: Peer, addresses: Sequence[str]) -> None:
         """Send a peer the values that it has set, with the next flush."""
+        for one in self.answered(peer):
+            self._echo(one, addresses)
+
+    def _echo(self, peer: Peer, addresses: Sequence[str]) -> None:
         if len(self._clients) >= limits.CLIENTS_ECHOED and peer not in self._clients:
             return
         client = self._client(peer)
@@ -85,9 +117,18 @@ class Clients:
         """
         self._client(peer).muted_until = time.monotonic() + seconds
 
-    def subscribe(self, peer: Peer, seconds: float, form: str = "", group: str = FIRST) -> bool:
+    def subscribe(
+        self,
+        peer: Peer,
+        seconds: float,
+        form: str = "",
+        group: str = FIRST,
+        *,
+        sender: Peer | None = None,
+    ) -> bool:
         """Send a peer every change for some time; return whether there was room for one more.
 
+        `sender` is who asked, where that is another port.
         `form` is empty for plain values, UNIT for values as 0 to 1, STATUS_PREFIX for the status;
         `group` is the group of addresses.
         """
@@ -106,6 +147,8 @@ class Clients:
         client.subscribed[topic] = now + seconds, form
         sent = (group + address + form for address in self.read(topic))
         client.to_send.update(dict.fromkeys(sent))
+        if sender is not None and sender != peer:
+            self._named[peer] = sender
         return True
 
     def unsubscribe(self, peer: Peer) -> None:
@@ -131,6 +174,7 @@ class Clients:
     def forget(self, peer: Peer) -> None:
         """Drop a peer that has hung up."""
         self._clients.pop(peer, None)
+        self._named.pop(peer, None)
 
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         """Send a peer an error, unless it has been sent many of late.
@@ -144,7 +188,8 @@ class Clients:
         client.last_error = now
         if client.errors.takes(now):
             reason = reason if isinstance(reason, str) else reason()
-            peer.send(pack(f"{self.prefix}/error", shortened(address), shortened(reason)))
+            error = pack(f"{self.prefix}/error", shortened(address), shortened(reason))
+            self.send(peer, error)
 
     # -- flushing ----------------------------------------------------------------------------
 

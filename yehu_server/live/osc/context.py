@@ -85,7 +85,7 @@ class CallContext:
     def _is_new_error(self, address: str) -> bool:
         """Whether to log an error at an address: once for each, and few of all.
 
-        Who sends from one port and listens at another is never answered, and may see it there.
+        Who sends from one port, listens at another and names none may see it there.
         """
         if address in self.wrong_addresses or not self.logged_errors.takes(time.monotonic()):
             return False
@@ -162,7 +162,7 @@ class GroupCalls:
 
     def _send(self, peer: Peer, address: str, *arguments: float | str) -> None:
         """Send a peer an answer of the group."""
-        peer.send(pack(self._prefix + address, *arguments))
+        self._clients.send(peer, pack(self._prefix + address, *arguments))
 
     def _send_error(self, peer: Peer, address: str, reason: str) -> None:
         """Send a peer the reason why a call of the group was refused."""

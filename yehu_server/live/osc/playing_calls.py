@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from yehu_server.errors import RefusedError
 from yehu_server.live.osc.call import Argument, Request, like, osc_call
 from yehu_server.live.osc.context import GroupCalls
+from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of
@@ -181,9 +182,9 @@ class PartCalls(GroupCalls):
             )
         seconds = within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
         peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer
-        if not self._clients.subscribe(peer, seconds, form, self._group):
+        if not self._clients.subscribe(peer, seconds, form, self._group, sender=call.peer):
             raise RefusedError("there are too many subscribers")
-        self._send(peer, "/subscribed", seconds)
+        peer.send(pack(f"{self._prefix}/subscribed", seconds))
 
 
 def within_an_hour(seconds: float) -> float:

@@ -8,7 +8,7 @@ from yehu_server.live.osc.call import ADDRESS, NAME, Request, osc_call
 from yehu_server.live.osc.change_publisher import own_address, topic_of
 from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, parameter_of, readable
-from yehu_server.live.osc.packets import answer
+from yehu_server.live.osc.packets import answer, pack
 from yehu_server.live.osc.playing_calls import port_of
 from yehu_server.live.part_addresses import check_own, check_part, split_group
 from yehu_server.params.table import PREFIX, UNIT, read
@@ -48,7 +48,7 @@ class ServerCalls(GroupCalls):
         numbers = call.numbers(0, 1)
         peer = call.peer.at(port_of(numbers[0])) if numbers else call.peer
         self._clients.unsubscribe(peer)
-        self._send(peer, "/unsubscribed")
+        peer.send(pack(f"{self._prefix}/unsubscribed"))
 
     @osc_call("/record/start", "Records into the recordings folder.", NAME, is_for_all=True)
     def _record_start(self, call: Request) -> None:
@@ -60,4 +60,4 @@ class ServerCalls(GroupCalls):
 
     @osc_call("/ping", "Answers with the same arguments.", is_for_all=True)
     def _ping(self, call: Request) -> None:
-        call.peer.send(answer(f"{self._prefix}/pong", call.payload))
+        self._clients.send(call.peer, answer(f"{self._prefix}/pong", call.payload))

@@ -243,6 +243,43 @@ def test_a_bend_moves_the_finger_along_its_string_as_far_as_it_goes(subtests):
                 assert listener.where() == where, bend
 
 
+# ---------------------------------------------------------------- vibrato on an open string
+
+
+def test_an_open_string_is_stopped_on_the_other_for_a_vibrato(subtests):
+    """C5 is, where it lasts long enough; the lowest note, F4, has no other place."""
+    for asked in ({"vibrato": 30.0}, {"vibrato_press": 0.4}, {"vibrato_press": 0.01}):
+        with subtests.test(asked=asked):
+            stopped = ("C", None) if asked == {"vibrato_press": 0.01} else ("F", 7)
+            player, listener = hands()
+            player.note_on(key(72))
+            assert listener.where() == ("C", None)
+            for name, value in asked.items():  # while it sounds: aftertouch, a wheel
+                player.write(f"/playing/{name}", value)
+            assert listener.where() == stopped
+            player.note_off(key(72))
+            listener.wait(1.0)
+            player.note_on(key(72))
+            assert listener.where() == stopped
+            player.note_on(key(65))
+            assert listener.where() == ("F", None)
+
+
+def test_a_fast_passage_uses_the_open_string_with_a_vibrato_too():
+    player, listener = hands()
+    player.write("/playing/vibrato", 30.0)
+    for note in (74, 72, 71, 72):
+        player.note_on(key(note))
+        assert note != 72 or listener.where() == ("C", None)
+        player.note_off(key(note))
+        listener.wait(0.2)
+    for length_s, where in ((0.3, ("C", None)), (0.8, ("F", 7))):
+        player.write("/playing/note_length", length_s)
+        player.note_on(key(72))
+        assert listener.where() == where
+        player.note_off(key(72))
+
+
 # ---------------------------------------------------------------- out of range
 
 

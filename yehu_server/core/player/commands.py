@@ -203,7 +203,9 @@ def apply_parameter_change(p: Any, c: Any, index: int) -> None:
         notes.set_bow_pressure(p, c)
     elif index == TREMOLO:
         notes.update_bow(p, c)
-    elif index in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING, LEFT_HAND):
+    elif index in (VIBRATO, PLAYING_VIBRATO_PRESS):
+        notes.rock(p, c)
+    elif index in (PLAYING_VIBRATO_RATE, PHRASING, LEFT_HAND):
         vibrato.set_vibrato(p, c)
     elif index == ASSIST:
         notes.set_assist(p, c)

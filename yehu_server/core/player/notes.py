@@ -46,6 +46,7 @@ from yehu_server.core.player.parameter_indices import (
     BOW_SIDE,
     BOW_SPEED,
     EXPRESSION,
+    NOTE_LENGTH,
     OUTPUT_LEVEL,
     PIZZICATO,
     PORTAMENTO,
@@ -151,6 +152,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     p.sounding = p.held - 1
     vary_next_note(p)
     is_slur = is_legato and not at_once
+    last_s = math.inf if p.began < 0 else (c.frame - p.note_began) / p.rate
     if not at_once:
         p.hurry = 0.0 if is_legato else hurry_of(p, c)
     p.stroke_speed_factor = 1.0
@@ -175,7 +177,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
             string, position = choose_for_slide(p, pitch, low, high, requested_speed(p), True)
         else:
             beats = BEATS[p.gesture.row]
-            shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p)
+            shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p, last_s)
             string, position = choose(p, pitch, beats, shakes, requested_speed(p))
             if not (at_once or beats or is_plucked(p)):
                 position = scooped(p, c, string, position, pitch - was)
@@ -368,6 +370,24 @@ def reset_corrections(p: Any, c: Any) -> None:
 def follow_bend(p: Any, c: Any) -> None:
     """Slide the finger to the pitch of the sounding note, and bow it as that pitch wants."""
     follow_pitch(p, c, BEND_RAMP_MS)
+
+
+@compiled_exactly
+def rock(p: Any, c: Any) -> None:
+    """Rock the finger as requested now; an open string's note is stopped on the other for it."""
+    vibrato.set_vibrato(p, c)
+    is_short = 0.0 < p.value[NOTE_LENGTH] < vibrato.AUDIBLE_FROM_S
+    is_open = p.sounding >= 0 and p.string == 1 and p.position == OPEN
+    if not is_open or is_short or is_touched(p) or is_plucked(p) or not vibrato.is_requested(p):
+        return
+    pitch = note_pitch(p)
+    string, position = choose(p, pitch, BEATS[p.gesture.row], True, requested_speed(p))
+    if string == 0:
+        left_hand.stop(p, c, string, position, min_press(p, string), STEP_MS)
+        begin_tuning(p, pitch)
+        set_bow_pressure(p, c)
+        update_bow(p, c)
+        pause_listening(p, c, SLURRED_MS)
 
 
 @compiled_exactly

@@ -38,6 +38,8 @@ from yehu_server.core.player.vibrato_table import CENTRE, DEFAULT_DEPTH_CENTS, D
 # The player's own, at full phrasing; by ear.
 OWN_CENTS, OWN_DELAY_MS = 60.0, 750.0
 AUDIBLE_FROM_S = 0.6  # length of a note from which its vibrato is audible
+SLOW_FROM_S = 0.3  # between notes of unknown length that may have one on an open string's pitch
+LEAST_PRESS = 0.1  # variation of the finger force that asks for one
 # It is narrower near the nut [Pop]: its share there, and from where on it is whole.
 AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
 FADING_MS = 600.0  # after the last note
@@ -91,11 +93,23 @@ def has_vibrato(p: Any) -> bool:
 
 
 @compiled_exactly
-def is_sure(p: Any) -> bool:
-    """Whether phrasing gives a note a vibrato, and it is known to last long enough for one."""
-    is_long = fingered(p) > 0.0 and p.value[NOTE_LENGTH] >= AUDIBLE_FROM_S
-    is_straight = has_vibrato(p) and VIBRATOS[p.gesture.row, CENTS] == 0.0
-    return bool(is_long and not is_straight)
+def is_sure(p: Any, last_s: float) -> bool:
+    """Whether a new note gets a vibrato that is heard: by phrasing in files, or as requested.
+
+    A note lasts long enough for one where that is known; else where the last began `last_s` ago.
+    """
+    if p.value[NOTE_LENGTH] <= 0.0:
+        return bool(last_s >= SLOW_FROM_S and is_requested(p))
+    is_long = p.value[NOTE_LENGTH] >= AUDIBLE_FROM_S
+    return bool(is_long and (is_requested(p) or (fingered(p) > 0.0 and not has_vibrato(p))))
+
+
+@compiled_exactly
+def is_requested(p: Any) -> bool:
+    """Whether a parameter, an aftertouch or the articulation asks for a vibrato."""
+    if has_vibrato(p):
+        return bool(VIBRATOS[p.gesture.row, CENTS] > 0.0)
+    return bool(p.value[VIBRATO] > 0.0 or p.value[PLAYING_VIBRATO_PRESS] >= LEAST_PRESS)
 
 
 @compiled_exactly

@@ -104,7 +104,7 @@ def test_what_was_added_what_stays_and_what_is_gone_is_said():
         mapping, path = learn(
             before, "/playing/vibrato", LearnedSource(source), soft=False, only=only
         )
-        assert added(before, mapping, "/playing/vibrato", source) == said
+        assert added(before, mapping, "/playing/vibrato", LearnedSource(source)) == said
         path.unlink()
 
 

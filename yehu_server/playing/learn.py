@@ -46,6 +46,11 @@ class LearnedSource:
     input_range: tuple[float, float] = (0.0, 1.0)
     part: int = 0  # of an address: as of `Bind`
 
+    def __str__(self) -> str:
+        """The source, with the range of its values where that is not 0 to 1."""
+        lo, hi = self.input_range
+        return self.source if (lo, hi) == (0.0, 1.0) else f"{self.source} ({lo:g} to {hi:g})"
+
 
 @dataclass
 class _Channel:
@@ -60,6 +65,7 @@ class Learner:
 
     def __init__(self) -> None:
         self._began_at: dict[tuple[int, str], float] = {}
+        self._ends: dict[str, tuple[float, float]] = {}  # lowest and highest value, by address
         self._channels: dict[int, _Channel] = {}
         self._pairs: set[tuple[int, int]] = set()  # channel, coarse half
 
@@ -77,10 +83,18 @@ class Learner:
         return None
 
     def learn_from_address(self, address: str, argument: float) -> LearnedSource | None:
-        """Receive a number at an OSC address of the user's own; return as `hear` does."""
-        input_range = (0.0, 1.0) if 0.0 <= argument <= 1.0 else (0.0, float(STEPS))
-        found = self._moved(-1, address, argument / input_range[1])
-        return LearnedSource(found.source, input_range) if found else None
+        """Receive a number at an OSC address of the user's own; return as `hear` does.
+
+        A value beyond 1 means that it sends 0 to 127. A step from 0 to 1 may be the first of 127,
+        so it counts with the value after it: a button's 0, or the next of a fader.
+        """
+        lowest, highest = self._ends.get(address, (argument, argument))
+        lowest, highest = ends = min(lowest, argument), max(highest, argument)
+        self._ends[address] = ends
+        full = 1.0 if highest <= 1.0 else float(STEPS)
+        if highest - lowest < DISTANCE * full or (*ends, argument) == (0.0, 1.0, 1.0):
+            return None
+        return LearnedSource(address, (0.0, full))
 
     def _control(self, channel: int, control: int, value: int) -> LearnedSource | None:
         state = self._channels.setdefault(channel, _Channel())
@@ -251,10 +265,10 @@ def others(mapping: Mapping, target: str, source: str) -> list[str]:
     return [other for other in movers if other != source]
 
 
-def added(before: Mapping, after: Mapping, target: str, source: str) -> str:
+def added(before: Mapping, after: Mapping, target: str, found: LearnedSource) -> str:
     """What `learn` has changed, in a line: what was added, what stays and what is gone."""
-    words = [f"{source} added: {target}"]
-    if stay := others(after, target, source):
+    words = [f"{found} added: {target}"]
+    if stay := others(after, target, found.source):
         words.append(f"{', '.join(stay)} {'keep' if len(stay) > 1 else 'keeps'} it")
     words += [f"{lost} no longer moves {of}" for lost, of in changes(before, after)]
     return "; ".join(words)

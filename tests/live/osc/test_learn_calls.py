@@ -48,6 +48,29 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
     assert not still.player.mapping.of("cc 21")
 
 
+def test_a_fader_learns_the_range_that_it_moves_through(still, wire, subtests):
+    """The first steps of 0 to 127 are those of a button, 0 and 1."""
+    for number, (values, source, full) in enumerate([
+        (range(9), "/fader0 (0 to 127)", 127.0),
+        ((127, 126, 100), "/fader1 (0 to 127)", 127.0),
+        ((0.0, 0.05, 0.1), "/fader2", 1.0),
+        ((0, 1, 0), "/fader3", 1.0),
+        ((1, 0), "/fader4", 1.0),
+    ]):  # fmt: skip
+        with subtests.test(values=values):
+            address = f"/fader{number}"
+            still.ask("/learn", "/playing/vibrato")
+            for value in values:
+                assert answers(still.peer.received(), "/learned") == []
+                still.take(wire.message(address, value))
+            (learned,) = answers(still.peer.received(), "/learned")
+            assert learned[1] == source
+            assert source in still.services.said[-1]
+            still.pass_time(0.05)
+            still.take(wire.message(address, full))
+            assert still.value("/playing/vibrato") == 100.0
+
+
 def test_others_lose_the_parameter_only_if_asked(still):
     still.ask("/learn", "/playing/vibrato", 0, 1)
     turn(still, 74, 10, 20, 64)

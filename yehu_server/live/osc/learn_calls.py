@@ -66,8 +66,8 @@ class LearnCalls(GroupCalls):
 
         def take() -> None:
             self._take(mapping)
-            self._context.log(f"{learn.added(before, mapping, target, source)} ({path})")
-            self._send(peer, "/learned", self._prefix + target, source, str(path), kept, *lost)
+            self._context.log(f"{learn.added(before, mapping, target, found)} ({path})")
+            self._send(peer, "/learned", self._prefix + target, str(found), str(path), kept, *lost)
 
         return take
 

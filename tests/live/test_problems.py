@@ -43,14 +43,16 @@ def test_what_came_in_between_is_reported_when_the_flood_is_over(clock):
     assert said == [f"{DROPS} (1 so far)", f"{DROPS} (7 so far)"]
 
 
-def test_the_players_delay_follows_the_devices_period(until):
-    instrument = Instrument(InstrumentSpec(48000))
+def test_the_players_delay_follows_the_devices_period_and_mpe_is_named_once(until):
+    said, instrument = [], Instrument(InstrumentSpec(48000))
     published = instrument._rig["published"]
     player = SimpleNamespace(
-        instrument=instrument, know_programs=lambda: None, finish_remap=lambda: None
+        instrument=instrument, know_programs=lambda: None, finish_remap=lambda: None, seems_mpe=True
     )
     ensemble = SimpleNamespace(lost_states=0, instruments=[instrument], first=instrument)
-    keeper = Housekeeper(ensemble, [player], Delay(instrument, 128), [], print, lambda: 0, print)
+    keeper = Housekeeper(
+        ensemble, [player], Delay(instrument, 128), [], print, lambda: 0, said.append
+    )
 
     def is_followed() -> bool:
         published["ahead_window"] += 1
@@ -62,6 +64,7 @@ def test_the_players_delay_follows_the_devices_period(until):
         until(is_followed, "a delay of more than a period")
     finally:
         keeper.stop()
+    assert [line for line in said if "--mpe" in line] == said[:1]
 
 
 def test_one_that_is_to_be_rare_is_a_line_at_once_and_then_one_a_minute(clock):

@@ -25,6 +25,21 @@ def test_the_wheel_bends_by_its_range_in_fourteen_bits_also_between_notes(midi, 
     assert listener.where() == ("C", 7)
 
 
+def test_a_port_that_plays_several_channels_but_its_first_seems_to_be_mpe(midi, player):
+    for channel in (2, 3):
+        midi.on(70, channel=channel)
+    midi.on(70, channel=4, port=1)
+    assert not player.seems_mpe
+    midi.on(70, channel=4)
+    assert player.seems_mpe
+    midi.on(70)
+    assert not player.seems_mpe
+    midi.rpn(0, 6, (6, 15), port=2)
+    for channel in (2, 3, 4):
+        midi.on(70, channel=channel, port=2)
+    assert not player.seems_mpe
+
+
 def test_rpn_0_sets_the_bend_range(midi, player):
     midi.on(77)
     midi.bend(8191)

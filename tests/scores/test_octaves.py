@@ -139,6 +139,15 @@ def test_channels_of_mpe_are_one_part_whether_the_file_says_it_or_the_player(fil
     assert keys(read_any(file(_=tune), ReadOptions(is_mpe=True))) == moved
 
 
+def test_mpe_is_named_where_no_configuration_says_so(file):
+    tune = [each for n, key in enumerate(LOW) for each in notes(key, channel=n % 3 + 1)]
+    pressed = [mido.Message("aftertouch", value=9, channel=n) for n in (1, 2, 3)]
+    for events, is_named in ((pressed + tune, True), (pressed[1:] + tune, False), (tune, False)):
+        score = read_any(file(_=events))
+        assert any("--mpe plays them as one" in line for line in score.remarks) == is_named
+    assert not read_any(file(_=pressed + tune), ReadOptions(is_mpe=True)).remarks[1:]
+
+
 # ---------------------------------------------------------------- the part with the tune
 
 TUNE = sounding(67, 69, 71, 72, 74, 71, 69, 67)

@@ -125,6 +125,7 @@ class Housekeeper:
         self._on_remap, self._on_message = on_remap, on_message
         self._osc_drops = osc_drops
         self._counters = CounterReport(on_message)
+        self._named_mpe = False
         self._began = time.monotonic()
         self._ending = threading.Event()
         self._next_poll = 0.0  # monotonic s
@@ -185,6 +186,9 @@ class Housekeeper:
             under_runs,
             UNDER_RUNS_EVERY_S,
         )
+        if any(player.seems_mpe for player in self._players) and not self._named_mpe:
+            self._named_mpe = True
+            self._on_message("MIDI: notes come on several channels; for an MPE controller: --mpe")
 
     def _follow(self, player: Player, watch: MappingWatch) -> None:
         """Give a player its mapping anew where the files have changed and are right."""

@@ -26,7 +26,14 @@ from yehu_server.params.spec import Param
 from yehu_server.params.table import TABLE, find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.sources import NOTE, POLY_PRESSURE, STEPS, VELOCITY, is_address
+from yehu_server.playing.sources import (
+    MPE_FROM,
+    NOTE,
+    POLY_PRESSURE,
+    STEPS,
+    VELOCITY,
+    is_address,
+)
 from yehu_server.system import clocks
 
 UNMAPPED = Mapping("", ())
@@ -203,6 +210,14 @@ class PartState:
         counts = self.record["notes_of"].tolist()
         found = {channel: count for channel, count in enumerate(counts) if count}
         return Counter({-1 if c == CHANNEL_COUNT else c: count for c, count in found.items()})
+
+    @property
+    def seems_mpe(self) -> bool:
+        """Whether a port without an MPE zone plays several channels but its first, as MPE does."""
+        zones = self.record["lower"] + self.record["upper"]
+        notes = self.record["notes_of"][:CHANNEL_COUNT].reshape(-1, CHANNELS_PER_PORT)
+        several = (notes[:, 1:] > 0).sum(axis=1) >= MPE_FROM
+        return bool(((zones == 0) & (notes[:, 0] == 0) & several).any())
 
     @property
     def percussion_notes(self) -> int:

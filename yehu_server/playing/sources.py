@@ -21,6 +21,7 @@ COARSE = range(32)  # controllers with a fine half, FINE_ABOVE higher
 FINE_ABOVE = 32
 STEPS, FINEST = 127, 16383  # largest values of 7 and of 14 bits
 NO_NRPN = FINEST  # 127/127 means that none is selected
+MPE_FROM = 3  # channels with notes that seem to be MPE's, where no zone says so
 CHANNELS = 16  # in each port
 
 _CC = re.compile(r"cc (0|[1-9][0-9]{0,2})(?:/(0|[1-9][0-9]{0,2}))?")

@@ -26,6 +26,7 @@ from yehu_server.scores.score import (
     check_duration,
     errors_name,
     says_mpe,
+    seems_mpe,
 )
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.track import DamagedError
@@ -216,6 +217,9 @@ def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
 
 def _midi_played(score: Score, options: ReadOptions) -> Score:
     is_mpe = options.is_mpe or says_mpe(score)
+    if not is_mpe and seems_mpe(score):
+        line = "each channel has a pressure, as MPE controllers send it: --mpe plays them as one"
+        score = replace(score, remarks=(*score.remarks, line))
     played = chosen_parts.MELODIC if options.channels is None else options.channels
     played = range(16) if is_mpe else {*chosen_parts.MELODIC, *played}
     score = with_key_switches(score, options.key_switches, played)

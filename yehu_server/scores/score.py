@@ -18,6 +18,7 @@ import mido
 
 from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.errors import ScoreError, one_line
+from yehu_server.playing.sources import MPE_FROM
 from yehu_server.util.files import error_reason, read_bytes
 
 MAX_DURATION_H = 2.0  # of all that is played, where no other is asked for
@@ -260,6 +261,13 @@ def says_mpe(score: Score) -> bool:
         and (event.message.control, event.message.value) == (RPN_FINE, MPE_CONFIGURATION)
         for event in score.events
     )
+
+
+def seems_mpe(score: Score) -> bool:
+    """Whether each of several channels but the first has notes and a pressure, as of MPE."""
+    pressed = {e.message.channel for e in score.events if e.message.type == "aftertouch"}
+    played = {note.channel for note in notes_of(score)}
+    return len(played) >= MPE_FROM and 0 not in played and played <= pressed
 
 
 def transposed(message: mido.Message, by: int) -> mido.Message:

@@ -25,7 +25,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.core.controls.ramps import start_ramp
 from yehu_server.core.controls.record import Controls
-from yehu_server.core.player import direct_bowing, left_hand, notes, vibrato
+from yehu_server.core.player import direct_bowing, left_hand, notes
 from yehu_server.core.player.ownership import invalidate_sent, ramp_to, release, write_directly
 from yehu_server.core.player.parameter_indices import (
     ASSIST,
@@ -203,10 +203,8 @@ def apply_parameter_change(p: Any, c: Any, index: int) -> None:
         notes.set_bow_pressure(p, c)
     elif index == TREMOLO:
         notes.update_bow(p, c)
-    elif index in (VIBRATO, PLAYING_VIBRATO_PRESS):
+    elif index in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING, LEFT_HAND):
         notes.rock(p, c)
-    elif index in (PLAYING_VIBRATO_RATE, PHRASING, LEFT_HAND):
-        vibrato.set_vibrato(p, c)
     elif index == ASSIST:
         notes.set_assist(p, c)
     elif index in (VOLUME, EXPRESSION):

@@ -152,7 +152,6 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     p.sounding = p.held - 1
     vary_next_note(p)
     is_slur = is_legato and not at_once
-    last_s = math.inf if p.began < 0 else (c.frame - p.note_began) / p.rate
     if not at_once:
         p.hurry = 0.0 if is_legato else hurry_of(p, c)
     p.stroke_speed_factor = 1.0
@@ -161,7 +160,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
     stroke_contours.begin_contours(p, c, is_slur)
     swing(p, is_slur)
     slide_ms = 0.0 if at_once and not is_touched(p) else slide_into_note_ms(p, c)
-    was, p.note_began = p.finger_pitch, c.frame
+    was, last, p.note_began = p.finger_pitch, p.note_began, c.frame
     if slide_ms > 0.0 and p.string >= 0:
         string, position = begin_from_last(p, slide_ms)
         pitch = p.finger_pitch = note_pitch(p)
@@ -177,7 +176,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
             string, position = choose_for_slide(p, pitch, low, high, requested_speed(p), True)
         else:
             beats = BEATS[p.gesture.row]
-            shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p, last_s)
+            shakes = not (beats or is_plucked(p)) and vibrato.is_sure(p, c, last)
             string, position = choose(p, pitch, beats, shakes, requested_speed(p))
             if not (at_once or beats or is_plucked(p)):
                 position = scooped(p, c, string, position, pitch - was)

@@ -93,13 +93,15 @@ def has_vibrato(p: Any) -> bool:
 
 
 @compiled_exactly
-def is_sure(p: Any, last_s: float) -> bool:
+def is_sure(p: Any, c: Any, last: int) -> bool:
     """Whether a new note gets a vibrato that is heard: by phrasing in files, or as requested.
 
-    A note lasts long enough for one where that is known; else where the last began `last_s` ago.
+    Where its length is not known it does unless it comes soon after the frame `last`, at which the
+    one before began.
     """
     if p.value[NOTE_LENGTH] <= 0.0:
-        return bool(last_s >= SLOW_FROM_S and is_requested(p))
+        is_slow = p.began < 0 or c.frame - last >= SLOW_FROM_S * p.rate
+        return bool(is_slow and is_requested(p))
     is_long = p.value[NOTE_LENGTH] >= AUDIBLE_FROM_S
     return bool(is_long and (is_requested(p) or (fingered(p) > 0.0 and not has_vibrato(p))))
 

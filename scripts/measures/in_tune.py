@@ -32,7 +32,6 @@ from measures.intonation import (
 from measures.loudness import centroid_hz
 from measures.shares import Share, share
 from measures.take import Setup, Take, held, in_parallel
-from yehu_server.cli.sound_options import is_of_room
 from yehu_server.core.physics.default_quantities import Quantities, measured_body
 from yehu_server.core.player.note_tables import OPEN_NOTES
 from yehu_server.params.table import STRING_NAMES
@@ -216,7 +215,7 @@ def presets(setup: Setup) -> list[Share]:
     parts = []
     shipped = Presets(Path(os.devnull))
     for name in shipped.names():
-        if all(map(is_of_room, shipped.load(name).values)):
+        if shipped.load(name).is_room:
             continue
         found = in_parallel(setup, _in_preset, [(name, *case) for case in cases])
         errors, levels, middles = np.array(found).T

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from yehu_server.cli.sound_options import BY_MIDI, Values, is_of_room, room_of
+from yehu_server.cli.sound_options import BY_MIDI, Values, room_of
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import EnsembleError, ParameterError, YehuError
 from yehu_server.scores.score import Score, concatenate
@@ -182,6 +182,7 @@ def _at(where: str) -> Iterator[None]:
 
 def _options_of(entry: PartEntry, playing: PlayingOptions, room: Values) -> PlayingOptions:
     """The options of a part: those of all, with its own mapping, preset, settings and place."""
+    from yehu_server.params.preset_file import is_of_room
     from yehu_server.playing.mapping import load
 
     with _at(entry.where):

@@ -21,7 +21,7 @@ from typing import Any, TextIO
 
 from yehu_server.cli.arguments import add_command, add_folder, add_options
 from yehu_server.cli.converters import port, web_address
-from yehu_server.cli.terminal import print_result
+from yehu_server.cli.terminal import print_result, warn
 
 # White and black of the 256 colours, which themes leave alone; and back.
 WHITE_ON_BLACK, PLAIN = "\x1b[38;5;231;48;5;16m", "\x1b[0m"
@@ -33,6 +33,12 @@ def show(text: str, stream: TextIO) -> None:
         with contextlib.suppress(OSError):  # the terminal was closed
             stream.write("".join(f"{line}\n" for line in drawn(text)))
             stream.flush()
+
+
+def open_in_browser(url: str) -> None:
+    """Open an address in the browser, or say where to go where there is none."""
+    if not webbrowser.open(url):
+        warn(f"--open: found no browser; open {url} in one")
 
 
 def drawn(text: str) -> list[str]:
@@ -88,7 +94,7 @@ def _show(folder: Path, port: int, opens: bool) -> None:
     with server_of(folder, port) as server:
         print_result(f"{url_of(server)}  (Ctrl-C ends it)")
         if opens:
-            webbrowser.open(url_of(server))
+            open_in_browser(url_of(server))
         try:
             server.serve_forever()
         except KeyboardInterrupt:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from yehu_server.errors import one_line
-from yehu_server.live.network import format_address
+from yehu_server.live.network import ANYWHERE, format_address
 from yehu_server.live.page.guests import LISTEN, OWN, PLAY, Guests
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
@@ -190,6 +190,9 @@ def connect_lines(
     else:
         where = lan.ip if address.is_unspecified else host
         lines.append(f"on a phone (TouchOSC): host {where}, send port {port}")
+        if not address.is_unspecified:
+            hint = f"--osc {ANYWHERE}:{port} hears both"
+            lines.append(f"programs of this machine send to {host} too, not to 127.0.0.1; {hint}")
         if is_open:
             lines.append("anyone on this network may play; --osc-allow restricts it")
     return lines

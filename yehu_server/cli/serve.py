@@ -20,7 +20,6 @@ import logging
 import signal
 import sys
 import threading
-import webbrowser
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -143,7 +142,7 @@ def _serve(arguments: argparse.Namespace, ending: _Ending) -> int:
 def _report_page(
     pages: Any, options: PageOptions, report: Callable[[str], None], arguments: argparse.Namespace
 ) -> None:
-    from yehu_server.cli.page import show
+    from yehu_server.cli.page import open_in_browser, show
     from yehu_server.cli.report import page_for_phones, page_lines
 
     where = (pages.host, pages.port, lan_address())
@@ -154,7 +153,7 @@ def _report_page(
     if phones and not arguments.quiet:
         show(phones, sys.stderr)  # where the lines of the log are
     if arguments.open:
-        webbrowser.open(lines[0].rpartition(" ")[2])
+        open_in_browser(lines[0].rpartition(" ")[2])
 
 
 @contextlib.contextmanager

@@ -12,7 +12,6 @@ from yehu_server.cli.converters import number_within, positive, target, whole
 from yehu_server.errors import ParameterError
 
 if TYPE_CHECKING:
-    from yehu_server.params.preset_file import Preset
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.preset_folders import Presets
     from yehu_server.rendering.options import Options
@@ -142,24 +141,16 @@ def sound_options_of(arguments: argparse.Namespace, form: str) -> Options:
 
 def room_of(name: str, presets: Presets) -> Values:
     """The values of a preset of rooms; raises YehuError where it is none."""
+    from yehu_server.params.preset_file import is_of_room
     from yehu_server.playing.preset_folders import is_name
 
     names = presets.names()
     if is_name(name) and name not in names:
-        rooms = [each for each in names if _is_room(presets.find(each))]
+        rooms = [each for each in names if presets.find(each).is_room]
         raise ParameterError(f"no room {name!r} (there are: {', '.join(rooms)})")
     preset = presets.find(name)
-    if not _is_room(preset):
+    if not preset.is_room:
         other = [each for each in preset.values if not is_of_room(each)]
         what = f"it sets {other[0]}" if other else "it sets nothing"
         raise ParameterError(f"{name}: not a room: {what}")
     return tuple(preset.values.items())
-
-
-def _is_room(preset: Preset) -> bool:
-    return bool(preset.values) and all(map(is_of_room, preset.values))
-
-
-def is_of_room(address: str) -> bool:
-    """Whether a parameter is one of the room, or how the body sounds in it."""
-    return address.startswith("/room/") or address in ("/body/width", "/body/gain")

@@ -45,6 +45,11 @@ class Preset:
     program: int | None = None
     unknown: tuple[str, ...] = ()
 
+    @property
+    def is_room(self) -> bool:
+        """Whether it is a place, and no sound of the instrument."""
+        return bool(self.values) and all(map(is_of_room, self.values))
+
     def remarks(self) -> list[str]:
         """Warnings about the unknown addresses of a file, a line each."""
         lines = []
@@ -54,6 +59,11 @@ class Preset:
         if len(self.unknown) > MAX_REMARKS:
             lines.append(f"{self.name}: and {len(self.unknown) - MAX_REMARKS} more")
         return lines
+
+
+def is_of_room(address: str) -> bool:
+    """Whether a parameter is one of the room, or how the body sounds in it."""
+    return address.startswith("/room/") or address in ("/body/width", "/body/gain")
 
 
 def document_of(name: Path | str, text: str = "") -> Document:

@@ -126,7 +126,11 @@ def test_presets_are_listed_and_a_broken_one_is_sent(still, own):
     (own / "mine.toml").write_text(HEAD + 'about = "wild"\n')
     (own / "bad.toml").write_text("version = 9\n")
     heard = still.ask("/preset/list")
-    rows = [message.arguments for message in heard if message.address == "/yehu/preset"]
+    rooms = [each.arguments[0] for each in heard if each.address == "/yehu/preset/room"]
+    assert {"hall", "chamber"} <= {*rooms}
+    assert not {"mine", "ordinary", "flautando"} & {*rooms}
+    names = ("/yehu/preset", "/yehu/preset/room")
+    rows = [message.arguments for message in heard if message.address in names]
     presets = SHIPPED.all()[0]
     expected = [[preset.name, preset.program or 0, preset.about] for preset in presets]
     assert rows == sorted([*expected, ["mine", 0, "wild"]])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ipaddress
+import webbrowser
 from ipaddress import IPv4Interface
 
 import pytest
@@ -10,9 +12,10 @@ import segno
 from yehu_server import cli
 from yehu_server.cli import serve_options
 from yehu_server.cli.config import parse
-from yehu_server.cli.page import PLAIN, WHITE_ON_BLACK, drawn
-from yehu_server.cli.report import page_for_phones
+from yehu_server.cli.page import PLAIN, WHITE_ON_BLACK, drawn, open_in_browser
+from yehu_server.cli.report import connect_lines, page_for_phones
 from yehu_server.cli.serve_options import options_of
+from yehu_server.live.network import ANYWHERE
 from yehu_server.live.page import site
 from yehu_server.live.page.guests import ROLES, Guests
 
@@ -111,3 +114,18 @@ def test_a_public_page_is_named_by_its_address_and_links_of_the_page_have_it(
         with pytest.raises(SystemExit):
             cli.main(["page", "--share-url", wrong])
         assert "expected one such as https://host/yehu/" in capsys.readouterr().err
+
+
+def test_where_osc_is_heard_and_where_it_is_not_is_said():
+    lan = ipaddress.ip_interface("192.168.1.5/24")
+    deaf = "programs of this machine send to 192.168.1.5 too, not to 127.0.0.1; --osc 0.0.0.0:9000"
+    for host, is_deaf in (("192.168.1.5", True), (ANYWHERE, False), ("127.0.0.1", False)):
+        lines = connect_lines(host, 9000, lan, is_open=False)
+        assert any(line.startswith(deaf) for line in lines) == is_deaf
+
+
+def test_who_opens_the_page_without_a_browser_is_told_where_it_is(monkeypatch, capsys):
+    for is_there in (True, False):
+        monkeypatch.setattr(webbrowser, "open", lambda _url, found=is_there: found)
+        open_in_browser("http://127.0.0.1:9002/")
+        assert ("open http://127.0.0.1:9002/ in one" in capsys.readouterr().err) != is_there

@@ -92,7 +92,7 @@ class PresetCalls(GroupCalls):
 
     @osc_call(
         "/preset/list",
-        "Sends all presets: name, MIDI program, description.",
+        "Sends all presets and rooms: name, MIDI program, description.",
         is_for_all=True,
         reads_files=True,
     )
@@ -100,7 +100,7 @@ class PresetCalls(GroupCalls):
         presets, errors = self._presets.all()
         for preset in presets:
             row = (preset.name, preset.program or 0, shortened(preset.about))
-            self._send(call.peer, "/preset", *row)
+            self._send(call.peer, "/preset/room" if preset.is_room else "/preset", *row)
         self._send(call.peer, "/presets", len(presets))
         for error in errors:
             self._send_error(call.peer, "/preset/list", str(error))

@@ -34,6 +34,9 @@ FLAGS = (
     *("-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics", "-fno-math-errno"),
 )
 LINKING = ("-shared", "-s")
+# The sources need C++'s headers, not its library, which zig would compile for each system, at its
+# first use: a minute of processor time each.
+COMPILER, LINKER = ("g++", "c++"), ("gcc", "cc")  # here, and of zig
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ def build(folder: Path, target: str) -> list[Path]:
     names = [name for name in NAMES if target in (name, ALL)]
     check_headers(target)
     for system in systems_of(target):
-        compiler_of(system)  # or there would be none after a minute of compiling
+        tool_of(system, COMPILER)  # or there would be none after a minute of compiling
     try:
         with tempfile.TemporaryDirectory() as scratch:
             work = Path(scratch)
@@ -119,14 +122,15 @@ def _put(folder: Path, name: str, work: Path) -> list[Path]:
     return made + put_expression_maps(folder, carried())
 
 
-def compiler_of(system: System) -> list[str]:
-    """The command that compiles and links C++ for a system; raises YehuError if there is none."""
-    if system.is_here and (found := shutil.which("g++")):
+def tool_of(system: System, names: tuple[str, str]) -> list[str]:
+    """The command of COMPILER or LINKER for a system; raises YehuError if there is none."""
+    here, of_zig = names
+    if system.is_here and (found := shutil.which(here)):
         return [found]
-    if (command := zig("c++")) is not None:
+    if (command := zig(of_zig)) is not None:
         return [*command, "-target", system.zig]
     if system.is_here:
-        raise YehuError(f"there is no C++ compiler here; {HAVE_IT.format('g++')}")
+        raise YehuError(f"there is no C++ compiler here; {HAVE_IT.format(here)}")
     raise YehuError(f"building for {system.name} needs zig: {install_command('plugin')}")
 
 
@@ -134,7 +138,7 @@ def compile_file(source: Path, into: Path, system: System, headers: Path) -> Non
     """Compile a source file to an object file, with the headers in a folder; raises YehuError."""
     run_compiler(
         [
-            *compiler_of(system),
+            *tool_of(system, COMPILER),
             *FLAGS,
             *(("-DYEHU_EDITOR",) if system.window else ()),
             f"-I{SOURCE}",
@@ -164,7 +168,7 @@ def link(made: Format, system: System, work: Path) -> Path:
     if "linux" in system.triple:
         options += ["-Wl,--no-undefined", "-Wl,--build-id=none", "-Wl,-Bsymbolic"]
     if system.is_here:
-        options += ["-static-libstdc++", "-static-libgcc", "-Wl,--as-needed"]
+        options += ["-static-libgcc", "-Wl,--as-needed"]
     parts = [*options, *map(str, objects), "-lm", *system.libraries]
-    run_compiler([*compiler_of(system), *parts, "-o", str(library)])
+    run_compiler([*tool_of(system, LINKER), *parts, "-o", str(library)])
     return library

@@ -30,7 +30,6 @@ INSIDE = """\
 | LV2's headers | in the plug-in | ISC |
 | DPF's travesty (VST3's interface) | in the plug-in | ISC |
 | libc++'s headers and compiler-rt, by zig | in the plug-in | Apache-2.0 WITH LLVM-exception |
-| libstdc++'s headers and libgcc, by g++ | in the plug-in | GPL-3.0 WITH GCC-exception-3.1 |
 | mingw-w64's runtime | in the plug-in for Windows | ZPL-2.1 and public domain |
 """
 

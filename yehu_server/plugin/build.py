@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from yehu_server.plugin.expression_maps import put_expression_maps
 from yehu_server.plugin.header import header
 from yehu_server.plugin.objects import make_objects, object_file
 from yehu_server.plugin.parameters import parameters
-from yehu_server.plugin.targets import ALL, NAMES, X11, System, systems_of
+from yehu_server.plugin.targets import ALL, X11, System, systems_of
 from yehu_server.util.hints import install_command
 
 SOURCE = Path(__file__).parent / "source"
@@ -69,9 +69,10 @@ def build(folder: Path, target: str) -> list[Path]:
 
     `target`: one of `targets.NAMES`, or `targets.ALL`.
     """
-    names = [name for name in NAMES if target in (name, ALL)]
+    systems = systems_of(target)
+    names = dict.fromkeys(system.name for system in systems)
     check_headers(target)
-    for system in systems_of(target):
+    for system in systems:
         tool_of(system, COMPILER)  # or there would be none after a minute of compiling
     try:
         with tempfile.TemporaryDirectory() as scratch:
@@ -81,12 +82,16 @@ def build(folder: Path, target: str) -> list[Path]:
             # And the formats' own, apart from those of this system that lie beside them.
             for inside, around in {(each.sign.parts[0], each.headers) for each in FORMATS}:
                 (work / inside).symlink_to(around / inside)
-            if any(system.window == X11 for system in systems_of(target)):
+            if any(system.window == X11 for system in systems):
                 (work / XCB.parts[0]).symlink_to(SYSTEM / XCB.parts[0])
             return [
                 path
                 for name in names
-                for path in _put(folder / name if target == ALL else folder, name, work)
+                for path in _put(
+                    folder / name if target == ALL else folder,
+                    [system for system in systems if system.name == name],
+                    work,
+                )
             ]
     except OSError as error:
         raise OutputError(f"{error.filename or folder}: {error.strerror}") from error
@@ -112,9 +117,8 @@ def write_header(work: Path) -> None:
     (work / HEADER_FILE).write_text(header(parameters(data), data))
 
 
-def _put(folder: Path, name: str, work: Path) -> list[Path]:
+def _put(folder: Path, systems: Sequence[System], work: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
-    systems = systems_of(name)
     made = [
         each.put(folder, {system: link(each, system, work) for system in systems})
         for each in FORMATS

@@ -11,8 +11,8 @@
 windows=$root/.venv-windows
 debian_windows_packages=(wine wine64)
 # Those that hold everywhere; the others start processes as forks, need JACK, or have not been tried.
-windows_tests=(tests/params tests/scores tests/surfaces tests/test_config.py tests/test_files.py
-    tests/test_renders.py tests/test_systems.py)
+windows_tests=(tests/live/midi/test_routes.py tests/live/midi/test_systems.py tests/params tests/scores
+    tests/surfaces tests/test_config.py tests/test_files.py tests/test_renders.py tests/test_systems.py)
 export WINEPREFIX=$windows/prefix WINEDEBUG=-all WINEARCH=win64
 
 windows_setup() {

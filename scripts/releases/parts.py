@@ -29,8 +29,7 @@ INSIDE = """\
 | CLAP's headers | in the plug-in | MIT |
 | LV2's headers | in the plug-in | ISC |
 | DPF's travesty (VST3's interface) | in the plug-in | ISC |
-| libc++ and compiler-rt, by zig | in the plug-in | Apache-2.0 WITH LLVM-exception |
-| libstdc++ and libgcc, by g++ | in the plug-in | GPL-3.0 WITH GCC-exception-3.1 |
+| libc++'s headers and compiler-rt, by zig | in the plug-in | Apache-2.0 WITH LLVM-exception |
 | mingw-w64's runtime | in the plug-in for Windows | ZPL-2.1 and public domain |
 """
 

@@ -8,6 +8,7 @@ import pytest
 
 from yehu_server.errors import YehuError
 from yehu_server.plugin import build
+from yehu_server.plugin.targets import ALL, systems_of
 
 
 def test_all_headers_that_are_missing_are_named_at_once(tmp_path, monkeypatch):
@@ -30,3 +31,9 @@ def test_all_headers_that_are_missing_are_named_at_once(tmp_path, monkeypatch):
     monkeypatch.setattr(build, "zig", lambda _tool: None)
     with pytest.raises(YehuError, match="building for windows needs zig"):
         build.build(tmp_path / "made", "windows")  # which has no X
+
+
+def test_what_is_released_is_linked_by_zig_for_an_old_c_library(monkeypatch):
+    monkeypatch.setattr(build, "zig", lambda tool: [tool])
+    for system in systems_of(ALL):
+        assert build.tool_of(system, build.LINKER) == ["cc", "-target", system.zig]

@@ -4,7 +4,7 @@
 
 import { nameOf } from "../hands/scale.js";
 import { Picture, font } from "./picture.js";
-import { soundingPitch } from "../sound/snapshot.js";
+import { SteadyPitch, soundingPitch } from "../sound/snapshot.js";
 
 const RANGE = 50; // cents to either side
 const TRUE_WITHIN = 5;
@@ -16,7 +16,7 @@ const LOUD = -3; // from here on the limiter works
 const FALL = 24; // dB/s
 const HOLD = 1.5; // s that the greatest level is marked
 
-/** The note of the tuning that sounds, and how far from it, in cents; now and over the last seconds. */
+/** The note of the tuning that sounds, and how far from it, in cents: its mean, now, and over the last seconds. */
 export class Tuner extends Picture {
   /** @param {HTMLCanvasElement} canvas @param {import('../hands/scale.js').KeyTuning} tuned */
   constructor(canvas, tuned) {
@@ -25,6 +25,7 @@ export class Tuner extends Picture {
     /** @type {{time: number, pitch: number}[]} */
     this.trace = [];
     this.pitch = NaN;
+    this.steady = new SteadyPitch();
   }
 
   /** @param {Moment} moment */
@@ -32,9 +33,9 @@ export class Tuner extends Picture {
     const { context } = this;
     if (state && isNew) this.#hear(soundingPitch(state), now, elapsed);
     const { width, height } = this;
-    const note = this.tuned.nearest(this.pitch);
+    const note = this.tuned.nearest(this.steady.pitch);
     const sounds = !Number.isNaN(this.pitch);
-    const cents = (this.pitch - note) * 100;
+    const cents = (this.steady.pitch - note) * 100;
     const isTrue = Math.abs(cents) <= TRUE_WITHIN;
     context.textBaseline = "middle";
     context.textAlign = "left";
@@ -53,7 +54,7 @@ export class Tuner extends Picture {
     if (!sounds) return;
     context.fillStyle = isTrue ? this.colours.good : this.colours.bad;
     context.beginPath(); // the needle
-    context.roundRect(this.#across(cents) - 2.5, this.bottom - 26, 5, 26, 2.5);
+    context.roundRect(this.#across((this.pitch - note) * 100) - 2.5, this.bottom - 26, 5, 26, 2.5);
     context.fill();
   }
 
@@ -63,6 +64,7 @@ export class Tuner extends Picture {
    * @param {number} elapsed s
    */
   #hear(pitch, now, elapsed) {
+    this.steady.take(pitch, now);
     const share = Math.min(elapsed / SMOOTH, 1);
     const isNear = Math.abs(pitch - this.pitch) < 0.5;
     this.pitch = isNear ? this.pitch + share * (pitch - this.pitch) : pitch;

@@ -101,3 +101,22 @@ export function regimeOf({ bow, heard, level, schelleng }) {
 export function soundingPitch({ pitch, heard }) {
   return pitch + (heard.certainty >= CERTAIN ? heard.errorCents / 100 : 0);
 }
+
+const STEADY = 0.6; // s: some turns of a vibrato
+const OTHER_NOTE = 0.5; // semitones
+
+/** The pitch that sounds, as a tuner reads it: the mean over some turns of its vibrato. */
+export class SteadyPitch {
+  /** NaN for silence. */
+  pitch = NaN;
+  /** @type {{time: number, pitch: number}[]} of one note */
+  #heard = [];
+
+  /** @param {number} pitch now @param {number} time s */
+  take(pitch, time) {
+    const isSame = Math.abs(pitch - this.pitch) < OTHER_NOTE;
+    const heard = isSame ? this.#heard.filter((one) => one.time > time - STEADY) : [];
+    this.#heard = [...heard, { time, pitch }];
+    this.pitch = this.#heard.reduce((sum, one) => sum + one.pitch, 0) / this.#heard.length;
+  }
+}

@@ -5,7 +5,7 @@
 
 import { find, make, makeChoice, whileShown, words } from "../elements.js";
 import { nameOf } from "../hands/scale.js";
-import { regimeOf, soundingPitch } from "../sound/snapshot.js";
+import { SteadyPitch, regimeOf, soundingPitch } from "../sound/snapshot.js";
 import { remember, settings } from "../settings.js";
 import { onLanguage, translate } from "../i18n.js";
 import { makeSliders } from "./slider.js";
@@ -24,6 +24,10 @@ export function showSeeing({ instrument, tuned, yehu, surface }) {
   const about = find("regime-about", HTMLElement);
   const tuner = find("tuner", HTMLCanvasElement);
   const schelleng = find("schelleng", HTMLCanvasElement);
+  const steady = new SteadyPitch();
+  instrument.addEventListener("state", () => {
+    if (instrument.state) steady.take(soundingPitch(instrument.state), performance.now() / 1000);
+  });
   let soundedAt = -Infinity;
   const update = () => {
     const name = regime.dataset.regime;
@@ -42,7 +46,7 @@ export function showSeeing({ instrument, tuned, yehu, surface }) {
       regime.dataset.regime = name;
       update();
     }
-    const pitch = soundingPitch(state);
+    const { pitch } = steady;
     const note = tuned.nearest(pitch);
     const cents = Math.round((pitch - note) * 100);
     tuner.ariaLabel = Number.isNaN(pitch)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from yehu_server.plugin.expression_maps import put_expression_maps
 from yehu_server.plugin.header import header
 from yehu_server.plugin.objects import make_objects, object_file
 from yehu_server.plugin.parameters import parameters
-from yehu_server.plugin.targets import ALL, NAMES, X11, System, systems_of
+from yehu_server.plugin.targets import ALL, X11, System, systems_of
 from yehu_server.util.hints import install_command
 
 SOURCE = Path(__file__).parent / "source"
@@ -34,6 +34,9 @@ FLAGS = (
     *("-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics", "-fno-math-errno"),
 )
 LINKING = ("-shared", "-s")
+# The sources need C++'s headers, not its library, which zig would compile for each system, at its
+# first use: a minute of processor time each.
+COMPILER, LINKER = ("g++", "c++"), ("gcc", "cc")  # here, and of zig
 
 
 @dataclass(frozen=True)
@@ -66,10 +69,11 @@ def build(folder: Path, target: str) -> list[Path]:
 
     `target`: one of `targets.NAMES`, or `targets.ALL`.
     """
-    names = [name for name in NAMES if target in (name, ALL)]
+    systems = systems_of(target)
+    names = dict.fromkeys(system.name for system in systems)
     check_headers(target)
-    for system in systems_of(target):
-        compiler_of(system)  # or there would be none after a minute of compiling
+    for system in systems:
+        tool_of(system, COMPILER)  # or there would be none after a minute of compiling
     try:
         with tempfile.TemporaryDirectory() as scratch:
             work = Path(scratch)
@@ -78,12 +82,16 @@ def build(folder: Path, target: str) -> list[Path]:
             # And the formats' own, apart from those of this system that lie beside them.
             for inside, around in {(each.sign.parts[0], each.headers) for each in FORMATS}:
                 (work / inside).symlink_to(around / inside)
-            if any(system.window == X11 for system in systems_of(target)):
+            if any(system.window == X11 for system in systems):
                 (work / XCB.parts[0]).symlink_to(SYSTEM / XCB.parts[0])
             return [
                 path
                 for name in names
-                for path in _put(folder / name if target == ALL else folder, name, work)
+                for path in _put(
+                    folder / name if target == ALL else folder,
+                    [system for system in systems if system.name == name],
+                    work,
+                )
             ]
     except OSError as error:
         raise OutputError(f"{error.filename or folder}: {error.strerror}") from error
@@ -109,9 +117,8 @@ def write_header(work: Path) -> None:
     (work / HEADER_FILE).write_text(header(parameters(data), data))
 
 
-def _put(folder: Path, name: str, work: Path) -> list[Path]:
+def _put(folder: Path, systems: Sequence[System], work: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
-    systems = systems_of(name)
     made = [
         each.put(folder, {system: link(each, system, work) for system in systems})
         for each in FORMATS
@@ -119,14 +126,15 @@ def _put(folder: Path, name: str, work: Path) -> list[Path]:
     return made + put_expression_maps(folder, carried())
 
 
-def compiler_of(system: System) -> list[str]:
-    """The command that compiles and links C++ for a system; raises YehuError if there is none."""
-    if system.is_here and (found := shutil.which("g++")):
+def tool_of(system: System, names: tuple[str, str]) -> list[str]:
+    """The command of COMPILER or LINKER for a system; raises YehuError if there is none."""
+    here, of_zig = names
+    if system.is_here and (found := shutil.which(here)):
         return [found]
-    if (command := zig("c++")) is not None:
+    if (command := zig(of_zig)) is not None:
         return [*command, "-target", system.zig]
     if system.is_here:
-        raise YehuError(f"there is no C++ compiler here; {HAVE_IT.format('g++')}")
+        raise YehuError(f"there is no C++ compiler here; {HAVE_IT.format(here)}")
     raise YehuError(f"building for {system.name} needs zig: {install_command('plugin')}")
 
 
@@ -134,7 +142,7 @@ def compile_file(source: Path, into: Path, system: System, headers: Path) -> Non
     """Compile a source file to an object file, with the headers in a folder; raises YehuError."""
     run_compiler(
         [
-            *compiler_of(system),
+            *tool_of(system, COMPILER),
             *FLAGS,
             *(("-DYEHU_EDITOR",) if system.window else ()),
             f"-I{SOURCE}",
@@ -164,7 +172,7 @@ def link(made: Format, system: System, work: Path) -> Path:
     if "linux" in system.triple:
         options += ["-Wl,--no-undefined", "-Wl,--build-id=none", "-Wl,-Bsymbolic"]
     if system.is_here:
-        options += ["-static-libstdc++", "-static-libgcc", "-Wl,--as-needed"]
+        options += ["-static-libgcc", "-Wl,--as-needed"]
     parts = [*options, *map(str, objects), "-lm", *system.libraries]
-    run_compiler([*compiler_of(system), *parts, "-o", str(library)])
+    run_compiler([*tool_of(system, LINKER), *parts, "-o", str(library)])
     return library

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from yehu_server import system
@@ -26,6 +26,7 @@ class System:
     ending: str  # of a shared library
     vst3: tuple[str, str]  # the folder of a VST3 bundle for the library, and its ending there
     cpu: str = LOWEST  # the least processor that it runs on, by LLVM's name
+    is_released: bool = False  # for others' machines: by zig, which can ask for an old C library
 
     @property
     def has_wide(self) -> bool:
@@ -49,10 +50,11 @@ class System:
 
     @property
     def is_here(self) -> bool:
-        """Whether it is this machine's own system."""
+        """Whether it is built on this machine for itself."""
         from llvmlite import binding
 
-        return self.triple == binding.get_process_triple() and system.NAME == "linux"
+        is_ours = self.triple == binding.get_process_triple() and system.NAME == "linux"
+        return is_ours and not self.is_released
 
     def target(self, *, wide: bool) -> Target:
         """What LLVM makes one of its versions for."""
@@ -99,5 +101,7 @@ def usual() -> str:
 
 
 def systems_of(name: str) -> list[System]:
-    """The systems of a `--target`."""
-    return [system for system in SYSTEMS if name in (ALL, system.name)]
+    """The systems of a `--target`; those of ALL are released."""
+    if name == ALL:
+        return [replace(system, is_released=True) for system in SYSTEMS]
+    return [system for system in SYSTEMS if system.name == name]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import queue
+import threading
 import time
 from collections.abc import Callable
 from functools import partial
@@ -144,3 +145,27 @@ def test_a_latency_that_cannot_be_is_none(reported_s, latency_ms):
     opened = object.__new__(stream.Stream)
     opened._stream = SimpleNamespace(latency=reported_s)
     assert opened.latency_ms == pytest.approx(latency_ms)
+
+
+def test_the_silent_clock_keeps_time_also_where_pythons_has_steps(monkeypatch):
+    """On Windows ``time.monotonic`` has steps of 16 ms, of six blocks."""
+    clock = SimpleNamespace(now=0.0, slept=[])
+
+    def sleep(seconds):
+        clock.slept.append(seconds)
+        clock.now += seconds
+
+    monkeypatch.setattr(
+        output,
+        "time",
+        SimpleNamespace(sleep=sleep, monotonic=lambda: clock.now // 0.016 * 0.016),
+    )
+    monkeypatch.setattr(output, "monotonic_ns", lambda: round(clock.now * 1e9))
+    enough = threading.Event()
+    ensemble = SimpleNamespace(
+        rate=48000.0, channels=2, process=lambda _block: len(clock.slept) > 50 and enough.set()
+    )
+    silent = output.SilentClock(ensemble, 128)
+    assert enough.wait(10.0)
+    silent.stop()
+    assert clock.slept == pytest.approx([128 / 48000] * len(clock.slept), rel=1e-3)

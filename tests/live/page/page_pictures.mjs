@@ -9,7 +9,9 @@ import { pathToFileURL } from "node:url";
 const web = pathToFileURL(`${resolve(process.argv[2])}/`);
 const { RestShape, Stroboscope } = await import(new URL("pictures/stroboscope.js", web).href);
 const { Limits } = await import(new URL("pictures/schelleng.js", web).href);
-const { regimeOf, soundingPitch } = await import(new URL("sound/snapshot.js", web).href);
+const { SteadyPitch, regimeOf, soundingPitch } = await import(
+  new URL("sound/snapshot.js", web).href
+);
 
 const POINTS = 64;
 
@@ -89,8 +91,28 @@ const state = {
   bow: { string: 0, speed: 0.2, force: 0.5, beta: 0.13, x: 0.3 },
   heard: { certainty: 0.97, errorCents: 12, slips: 1 },
 };
-const heard = (/** @type {object} */ changes) => ({ ...state.heard, ...changes });
+const heard = (/** @type {object} */ changes) => ({
+  ...state.heard,
+  ...changes,
+});
 const bow = (/** @type {object} */ changes) => ({ ...state.bow, ...changes });
+/** What a tuner reads of a vibrato about 69.05, after each look at it, and of the next note and silence. */
+function readings() {
+  const tuner = new SteadyPitch();
+  const read = (/** @type {number} */ pitch, /** @type {number} */ time) => {
+    tuner.take(pitch, time);
+    return tuner.pitch;
+  };
+  const times = Array.from({ length: 100 }, (_, i) => i / 50);
+  const vibrato = times.map((time) => read(69.05 + 0.3 * Math.sin(2 * Math.PI * 5.5 * time), time));
+  return {
+    vibrato: vibrato.slice(40),
+    next: read(70.1, 2),
+    silence: read(NaN, 2.1),
+    again: read(62, 2.2),
+  };
+}
+
 console.log(
   JSON.stringify({
     rest: restError(),
@@ -100,7 +122,11 @@ console.log(
     regimes: {
       helmholtz: regimeOf(state),
       slipping: regimeOf({ ...state, heard: heard({ slips: 2 }) }),
-      raucous: regimeOf({ ...state, heard: heard({ certainty: 0.3 }), bow: bow({ force: 3 }) }),
+      raucous: regimeOf({
+        ...state,
+        heard: heard({ certainty: 0.3 }),
+        bow: bow({ force: 3 }),
+      }),
       unheard: regimeOf({ ...state, heard: heard({ certainty: 0 }) }),
       settling: regimeOf({ ...state, heard: heard({ certainty: 0.3 }) }),
       ringing: regimeOf({ ...state, bow: bow({ string: -1 }) }),
@@ -108,5 +134,6 @@ console.log(
     },
     pitch: soundingPitch(state),
     unheard: soundingPitch({ ...state, heard: heard({ certainty: 0.2 }) }),
+    readings: readings(),
   }),
 );

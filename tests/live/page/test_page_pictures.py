@@ -37,6 +37,12 @@ def test_the_pitch_that_sounds_is_the_one_heard_if_any_is(answers) -> None:
     assert answers["unheard"] == 69.0
 
 
+def test_a_tuner_reads_the_middle_of_a_vibrato_and_each_note_anew(answers) -> None:
+    readings = answers["readings"]
+    assert readings["vibrato"] == pytest.approx([69.05] * 60, abs=0.05)
+    assert (readings["next"], readings["silence"], readings["again"]) == (70.1, None, 62)
+
+
 def test_the_limits_are_known_at_every_place_of_the_bow(answers) -> None:
     """The greatest force falls with the distance from the bridge, the least with its square."""
     *places, tip = answers["limits"]

@@ -21,6 +21,7 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.errors import DeviceError
 from yehu_server.live.audio.devices import OUTPUT
+from yehu_server.system.clocks import NS, monotonic_ns
 from yehu_server.system.memory import SharedMemory
 from yehu_server.util.files import error_reason
 from yehu_server.util.processes import Child, Message
@@ -64,17 +65,17 @@ class SilentClock:
         self._thread.join()
 
     def _run(self) -> None:
-        period = len(self._block) / self._ensemble.rate
-        due = time.monotonic()
+        period_ns = NS * len(self._block) / self._ensemble.rate
+        due_ns = float(monotonic_ns())  # as time.monotonic has steps of 16 ms on Windows
         while not self._ending.is_set():
             with contextlib.suppress(MemoryError):
                 self._ensemble.process(self._block)
-            due += period
-            early = due - time.monotonic()
-            if early > 0.0:
-                time.sleep(early)
-            elif early < -LONGEST_LAG_S:
-                due = time.monotonic()
+            due_ns += period_ns
+            early_s = (due_ns - monotonic_ns()) / NS
+            if early_s > 0.0:
+                time.sleep(early_s)
+            elif early_s < -LONGEST_LAG_S:
+                due_ns = monotonic_ns()
 
 
 @dataclass

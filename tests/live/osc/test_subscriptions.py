@@ -81,6 +81,7 @@ def test_a_server_never_talks_to_itself(make_live, kit, until, host):
     time.sleep(0.2)
     until(lambda: are_still(live), "it to have said all")
     client.close()
+    assert live.handler.counts.messages == 1  # the client's alone
 
 
 # ---------------------------------------------------------------- the status

@@ -17,8 +17,8 @@ from yehu_server.errors import YehuError
 from yehu_server.scores.abc.tokens import TOKEN
 from yehu_server.scores.reading import read_any
 
-FEW, MORE = 100, 800
-MAX_RATIO = 14  # times the lines for 8 times the file; 64 times is quadratic
+FEW, MORE = 100, 400
+MAX_RATIO = 7  # times the lines for 4 times the file; 16 times is quadratic
 ABC = "X:1\nT:t\nM:4/4\nL:1/64\nK:C\n"
 HEAD = '<?xml version="1.0"?><score-partwise version="4.0"><part-list><score-part id="P">'
 XML = f"{HEAD}<part-name>n</part-name></score-part></part-list><part id='P'>"

@@ -21,7 +21,7 @@ from platformdirs import user_config_path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # The same cases on every machine, and no deadline: a first call may have to compile.
-settings.register_profile("yehu", deadline=None, derandomize=True, database=None, max_examples=40)
+settings.register_profile("yehu", deadline=None, derandomize=True, database=None, max_examples=25)
 settings.register_profile("long", settings.get_profile("yehu"), max_examples=200)
 settings.load_profile("yehu")
 

@@ -5,8 +5,6 @@
 prints the sums of the named ones, or of all, for this level of processors, as JSON.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import io
@@ -41,7 +39,10 @@ RENDERS = {
     "controllers": "bow_pressure.mid --mapping keyboard-expressive",
     "a section by MPE": "mpe_phrase.mid --mapping mpe --rate 22050 --set /playing/section=2",
     "plucked": "tunes/twinkle.jianpu --preset pizzicato --gain-db 6",
+    "a short ensemble": "../tests/duet.abc --ensemble --rate 22050 --normalize",
+    "a short phrase, dry at 96 kHz": "phrases/shi_bei_jiu.jianpu --dry --rate 96000",
 }
+LONG = ("a MIDI file", "an ensemble", "jianpu, dry at 96 kHz", "MusicXML")  # and seen by the others
 SIMULATION, CAPTURE = "a simulation", "a capture"
 NAMES = (*RENDERS, SIMULATION, CAPTURE)
 RATE = 44100

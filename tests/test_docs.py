@@ -3,8 +3,6 @@
 Links are those of Markdown; how the site shows the pages is in tests/documentation/.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import re
@@ -138,8 +136,9 @@ def test_every_program_runs(name, program, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     controls = {"bow_force": 0.7, "bow_velocity": 0.3}
     (tmp_path / "gesture.json").write_text(json.dumps({"duration": 0.01, "controls": controls}))
-    assert main(["simulate", "gesture.json", "-o", "run.npz", "--energy"]) == 0
-    capsys.readouterr()
+    if "run.npz" in program:
+        assert main(["simulate", "gesture.json", "-o", "run.npz", "--energy"]) == 0
+        capsys.readouterr()
     exec(code, {})  # noqa: S102 - our own documentation
     assert capsys.readouterr().out
 

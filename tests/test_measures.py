@@ -1,7 +1,5 @@
 """The measures of scripts/playability.py tell right from wrong on sounds that are known."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +10,14 @@ from yehu_server.playing.bowing_tables import bowing_table_beside, read_bowing_t
 
 SCRIPTS = Path(__file__).parents[1] / "scripts"
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(autouse=True)
 def scripts(monkeypatch):
     monkeypatch.syspath_prepend(SCRIPTS)
 
 
-@pytest.mark.slow
 def test_an_erhu_plays_its_two_and_a_half_octaves_in_tune():
     """98 % of all, as docs/intonation.md tells; on another processor chaos may move some notes."""
     from measures.in_tune import grid

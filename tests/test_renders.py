@@ -1,7 +1,5 @@
 """One level of processors gives one sequence of samples, whatever the processor and libraries."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
@@ -11,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from as_processor import PROCESSORS, V2, environment, missing
-from renders import NAMES, SUMS
+from renders import LONG, NAMES, SUMS
 
 from yehu_server.compile import levels
 
@@ -38,32 +36,25 @@ def known() -> dict[str, str]:
     return json.loads(SUMS.read_text())[LEVEL]
 
 
-@pytest.mark.parametrize("half", [0, 1])
-def test_commands_give_the_samples_of_this_level(known, half):
-    names = NAMES[half::2]
+@pytest.mark.parametrize(
+    "names",
+    [[name for name in NAMES if name not in LONG], pytest.param([*LONG], marks=pytest.mark.slow)],
+    ids=["short", "long"],
+)
+def test_commands_give_the_samples_of_this_level(known, names):
     found = sums(*names)
     assert [name for name in names if found[name] != known[name]] == []
 
 
-# Without --all, the one that differs most from what is new.
-@pytest.mark.parametrize(
-    "processor",
-    [V2, *(pytest.param(each, marks=pytest.mark.slow) for each in PROCESSORS if each != V2)],
-)
-def test_the_processor_that_libraries_see_does_not_matter(known, processor):
-    if lacking := missing(processor):
-        pytest.skip(f"its code does not run here, for lack of {', '.join(lacking)}")
-    found = sums(*QUICK, **{**environment(processor), levels.VARIABLE: LEVEL})
-    assert found == {name: known[name] for name in QUICK}
-
-
-@pytest.mark.skipif(sys.platform != "linux" or not CC, reason="needs a C compiler")
-def test_the_c_library_does_not_matter(known, tmp_path):
-    """Another one's mathematics differs in the last bit: here each result does."""
-    library = tmp_path / "other_libm.so"
-    source = TESTS / "other_libm.c"
+@pytest.fixture(scope="module")
+def other_libm(tmp_path_factory) -> dict[str, str]:
+    """The environment of a C library whose mathematics gives other last bits."""
+    if sys.platform != "linux" or not CC:
+        return {}
+    library = tmp_path_factory.mktemp("libm") / "other_libm.so"
     flags = ["-O1", "-fno-builtin", "-shared", "-fPIC"]
-    subprocess.run([CC, *flags, str(source), "-o", str(library), "-lm", "-ldl"], check=True)
+    source = str(TESTS / "other_libm.c")
+    subprocess.run([CC, *flags, source, "-o", str(library), "-lm", "-ldl"], check=True)
     look = "import math; print(math.exp(0.3), math.sin(0.3), 1.1**1.1)"
     here, there = (
         subprocess.run(
@@ -73,7 +64,18 @@ def test_the_c_library_does_not_matter(known, tmp_path):
         for settings in ({}, {"LD_PRELOAD": str(library)})
     )  # fmt: skip
     assert not set(here) & set(there)
-    found = sums(*QUICK, LD_PRELOAD=str(library))
+    return {"LD_PRELOAD": str(library)}
+
+
+# Without --all, the one that differs most from what is new.
+@pytest.mark.parametrize(
+    "processor",
+    [V2, *(pytest.param(each, marks=pytest.mark.slow) for each in PROCESSORS if each != V2)],
+)
+def test_processor_and_c_library_do_not_matter(known, other_libm, processor):
+    if lacking := missing(processor):
+        pytest.skip(f"its code does not run here, for lack of {', '.join(lacking)}")
+    found = sums(*QUICK, **{**environment(processor), **other_libm, levels.VARIABLE: LEVEL})
     assert found == {name: known[name] for name in QUICK}
 
 

@@ -1,7 +1,5 @@
 """OSC in bytes, a peer that only listens, and a still clock."""
 
-from __future__ import annotations
-
 import math
 import struct
 from collections import deque
@@ -141,7 +139,7 @@ class FakePeer:
     def send(self, packet: bytes) -> None:
         self.packets.append(packet)
 
-    def at(self, port: int) -> FakePeer:
+    def at(self, port: int) -> "FakePeer":
         return self.others.setdefault(port, FakePeer(port))
 
     def received(self) -> list[Message]:

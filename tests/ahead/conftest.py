@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from ahead.phrases import PHRASES, RATE, played
 
-from yehu_server.ahead.build import build, page_linker, page_module
+from yehu_server.ahead.build import HEADER_FILE, build, page_linker, page_module
+from yehu_server.ahead.build_hash import build_hash
 from yehu_server.ahead.interpreter import snapshot_length
 from yehu_server.compile import levels
+from yehu_server.compile.cache_folder import data_folder
 
 HERE = Path(__file__).parent
 
@@ -23,10 +25,12 @@ def wasm() -> Path:
 
 @pytest.fixture(scope="session")
 def library(once) -> Path:
-    """A folder with the library of this level, and its header."""
+    """A folder with the library of this level, and its header; kept, as the page's module is."""
+    folder = data_folder() / f"library-{RATE:.0f}-{levels.level()}-{build_hash()}"
 
-    def make(folder: Path) -> Path:
-        build("library", folder, rates=[RATE], level=levels.level())
+    def make(_: Path) -> Path:
+        if not (folder / HEADER_FILE).is_file():  # which is written last
+            build("library", folder, rates=[RATE], level=levels.level())
         return folder
 
     return once("library", make)

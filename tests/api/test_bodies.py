@@ -53,7 +53,7 @@ def test_a_fit_is_made_in_a_process_with_one_thread_and_what_it_finds_is_the_sam
     refused, monkeypatch
 ):
     measured = yehu.body.average(yehu.body.made_taps(count=2, seconds=0.3))
-    how = {"band_hz": (250.0, 2000.0), "sections": 8}
+    how = {"band_hz": (300.0, 1000.0), "sections": 4}
     here = fit(measured, **how)
     given, run = [], subprocess.run
 

@@ -1,7 +1,5 @@
 """``yehu-server dataset``: labelled sounds, the same each time."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import io
@@ -30,9 +28,9 @@ from yehu_server.util import __version__
 # Where a whole command starts them, its workers are new Pythons.
 pytestmark = pytest.mark.usefixtures("_forked_workers")
 
-COUNT = 40
+COUNT = 24
 TEXT = """\
-count = 40
+count = 24
 seed = 5
 [split]
 train = 3
@@ -55,7 +53,7 @@ def made(tmp_path_factory) -> Path:
     out, err = io.StringIO(), io.StringIO()
     with in_the_place_of_workers(), redirect_stdout(out), redirect_stderr(err):
         assert main([*map(str, words)]) == 0
-    assert "40 made, 0 up to date, 0 failed" in out.getvalue()
+    assert "24 made, 0 up to date, 0 failed" in out.getvalue()
     assert err.getvalue() == ""
     return folder
 
@@ -132,7 +130,7 @@ def test_another_seed_changes_all_draws_and_another_entry_no_other(made):
     "signum", [pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGKILL]
 )
 def test_an_interrupted_data_set_goes_on_where_it_was(command, tmp_path, signum):
-    longer = TEXT.replace("duration = 0.1", "duration = 0.3").replace("count = 40", "count = 32")
+    longer = TEXT.replace("duration = 0.1", "duration = 0.2").replace("count = 24", "count = 32")
     (tmp_path / "d.toml").write_text(longer)
     words = (tmp_path / "d.toml", "-o", tmp_path / "out")
     process = start("dataset", *words, "--jobs", 1)

@@ -1,7 +1,5 @@
 """A section passes commands on to its players: notes one by one, as they begin, all else to all."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -51,7 +49,7 @@ class Kept:
 
     is_live, frame, rate, spec = False, 0, RATE, InstrumentSpec(44100.0)
 
-    def __init__(self, number: int, part: list[Kept]) -> None:
+    def __init__(self, number: int, part: "list[Kept]") -> None:
         self.address, self._part = number * RIG_BYTES, part
         self._midi, self.tables = np.zeros(1, MIDI), np.zeros(TABLE_SLOTS, TABLES)
         self.posted = 0

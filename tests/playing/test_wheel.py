@@ -1,7 +1,5 @@
 """With the default mapping the mod wheel draws the bow or plucks; aftertouch rocks the finger."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -69,7 +67,7 @@ def test_the_wheel_moves_the_level_over_some_20_db_and_never_to_silence(rendered
     def level(key: int, messages: Sequence[mido.Message]) -> float:
         return float(np.median([level_db(rendered(key, messages, seed)) for seed in SEEDS]))
 
-    for key in KEYS:
+    for key in KEYS[::2]:
         levels = [level(key, wheel(127, value)) for value in (0, 64, 127)]
         assert (np.diff(levels) > 5.0).all(), (key, levels)
         assert 17.0 < levels[-1] - levels[0] < 22.0, (key, levels)
@@ -96,7 +94,7 @@ def test_expression_multiplies_down_to_the_bow_leaving_the_string(rendered) -> N
 
 @pytest.mark.parametrize("kind", ["aftertouch", "polytouch"])
 def test_aftertouch_rocks_the_finger_the_more_the_harder_it_is(rendered, kind: str) -> None:
-    for key in KEYS if kind == "aftertouch" else KEYS[:1]:
+    for key in KEYS[::2] if kind == "aftertouch" else KEYS[:1]:
         own = {"note": key} if kind == "polytouch" else {}
         values = (0, 80, 127)
         presses = {value: mido.Message(kind, value=value, **own) for value in values}

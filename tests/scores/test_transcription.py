@@ -1,7 +1,5 @@
 """What was played becomes a written score: beats, lengths, slurs, dynamics, keys."""
 
-from __future__ import annotations
-
 import random
 from fractions import Fraction
 from pathlib import Path
@@ -19,10 +17,7 @@ from yehu_server.scores.capture_writer import CaptureWriter
 from yehu_server.scores.midi_export import midi_file
 from yehu_server.scores.reading import read_any, read_written
 from yehu_server.scores.smf.reader import read_score
-from yehu_server.scores.transcription import (
-    read_as_written,
-    written_of_midi,
-)
+from yehu_server.scores.transcription import read_as_written, written_of_midi
 from yehu_server.scores.written.in_range import default_parts
 from yehu_server.scores.written.performed import performed
 

@@ -86,13 +86,17 @@ def test_all_ramps_go_straight_and_end_exactly_on_their_targets(instrument):
 
 
 def test_a_write_that_names_no_ramp_takes_the_parameters_own_smoothing():
+    instrument, now = Instrument(InstrumentSpec(RATE)), 0
     for param in ENGINE:
-        instrument, frames = Instrument(InstrumentSpec(RATE)), round(param.smooth_ms * 1e-3 * RATE)
         instrument.write(param.address, param.hi if param.default < param.hi else param.lo)
-        run(instrument, frames - 1)
-        assert value(instrument, param.address) not in {param.lo, param.hi}, param
-        run(instrument, 1)
-        assert value(instrument, param.address) in {param.lo, param.hi}, param
+    for smooth_ms in sorted({param.smooth_ms for param in ENGINE}):
+        for frame, are_there in ((end := round(smooth_ms * 1e-3 * RATE)) - 1, False), (end, True):
+            run(instrument, frame - now)
+            now = frame
+            for param in ENGINE:
+                if param.smooth_ms == smooth_ms:
+                    found = value(instrument, param.address)
+                    assert (found in {param.lo, param.hi}) == are_there, param
 
 
 def test_a_write_without_a_ramp_acts_on_its_frame(instrument):

@@ -97,7 +97,7 @@ def test_whatever_a_stage_holds_the_mix_is_finite_and_comes_back(duet, kind, eve
 
 def check_it_comes_back(ensemble: Ensemble, field: str, bad: float) -> None:
     """The mix is finite; and sounds again, unless what was lost is only prepared at the start."""
-    out = np.full((RATE // 2, 2), np.nan, np.float32)
+    out = np.full((3 * RATE // 10, 2), np.nan, np.float32)
     before = int(ensemble._stage["invalid_samples"])
     for start in range(0, len(out), RATE // 10):
         ensemble.process(out[start : start + RATE // 10])

@@ -18,9 +18,14 @@ def test_what_is_not_kept_is_compiled_by_a_process_for_each_of_two_processors(
 ):
     warming.warm_up()
     command = python_command("yehu_server.compile.worker_processes")
+    start, idle = worker_processes.subprocess.Popen, [sys.executable, "-c", ""]
+
+    def begun(words, **how):
+        return start(words if expected == 1 else idle, **how)  # what they do is seen of one
+
     for is_kept, commands in ((True, []), (False, [command] * expected)):
         with monkeypatch.context() as patch:
-            popen = Mock(wraps=worker_processes.subprocess.Popen)
+            popen = Mock(side_effect=begun)
             patch.setattr(worker_processes.subprocess, "Popen", popen)
             patch.setattr(worker_processes.os, "cpu_count", lambda: processors)
             if not is_kept:

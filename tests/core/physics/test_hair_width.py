@@ -59,7 +59,7 @@ def jumps(t):
     }
 
 
-@settings(max_examples=4)
+@settings(max_examples=2)  # beside those of test_passive.py
 @given(
     kind=KINDS,
     modes=st.integers(1, layout.MAX_MODES),

@@ -57,7 +57,7 @@ def test_every_strip_of_wide_hair_obeys_the_law_where_friction_falls_steeply(str
             "press": [np.full(len(t), 1.5)],
         }
 
-    for seconds in (0.3, *np.arange(0.1, 0.11, 0.0007)):
+    for seconds in (0.3, *np.arange(0.1, 0.11, 0.0014)):
         run = play(curves, seconds, quantities=quantities)
         balanced(run)
         for e in range(points):

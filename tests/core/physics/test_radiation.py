@@ -57,7 +57,7 @@ def test_at_the_measured_rate_the_filter_is_the_measured_one():
 @pytest.mark.parametrize("rate", [MEASURED_RATE, 192000.0])
 def test_the_running_filter_rings_as_its_formula(rate):
     """Impulse response of each section by its own recursion, summed, plus the direct taps."""
-    frames = 3000
+    frames = 1000
     model = kernel.prepare(Quantities(), rate)
     expected = np.zeros(frames)
     expected[: layout.MAX_TAPS] = model["taps"][0]
@@ -71,10 +71,10 @@ def test_the_running_filter_rings_as_its_formula(rate):
     assert np.abs(impulse - expected).max() < 3e-13 * np.abs(expected).max()
 
 
-def test_every_rate_sounds_like_the_measured_body_and_none_shouts_where_nobody_measured():
+def test_every_rate_sounds_like_the_measured_body_and_none_shouts_where_nobody_measured(everything):
     """Beyond 22.05 kHz: against the measured response there."""
-    for rate in RATES:
-        frequency_hz = np.linspace(0.0, rate / 2.0, 10_000)
+    for rate in RATES if everything else RATES[::3]:
+        frequency_hz = np.linspace(0.0, rate / 2.0, 2_000)
         known = np.minimum(frequency_hz, MEASURED_RATE / 2.0)
         model = kernel.prepare(Quantities(), rate)[0]
         gain = np.abs(response(model, rate, frequency_hz) / measured_response(known))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from core.physics.runs import bump, frequency_near, play, shaped
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pitch import cents
 
@@ -18,7 +18,6 @@ from yehu_server.core.physics.grid import (
 )
 
 YEHU = Quantities()
-few = settings(max_examples=40)
 GRIDS = st.integers(min_value=12, max_value=layout.MAX_INTERVALS)
 
 
@@ -41,7 +40,6 @@ def placed(place, position, N):
     return place(position, N, weights), weights
 
 
-@few
 @given(contacts(), st.tuples(*[st.floats(-1.0, 1.0)] * 4))
 def test_cubic_weights_read_every_cubic_exactly_that_is_zero_at_the_ends_or_they_are_far(
     contact, factors
@@ -57,7 +55,6 @@ def test_cubic_weights_read_every_cubic_exactly_that_is_zero_at_the_ends_or_they
         assert value == pytest.approx(cubic(at / N), abs=1e-13)
 
 
-@few
 @given(contacts(), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_linear_weights_read_every_line_exactly(contact, offset, slope):
     N, position = contact
@@ -69,7 +66,6 @@ def test_linear_weights_read_every_line_exactly(contact, offset, slope):
     assert np.count_nonzero(weights) <= 2
 
 
-@few
 @given(contacts(), st.sampled_from([cubic_weights, linear_weights]), st.integers(0, 2**32 - 1))
 def test_spreading_is_the_transpose_of_reading_and_never_moves_the_fixed_ends(contact, place, seed):
     """<u, J f> = (I u) f: a force works on exactly the motion that it reads."""
@@ -83,7 +79,6 @@ def test_spreading_is_the_transpose_of_reading_and_never_moves_the_fixed_ends(co
     assert not pushed[layout.GHOST + N :].any()
 
 
-@few
 @given(contacts(), st.floats(0.0, 1.0), st.sampled_from([cubic_weights, linear_weights]))
 def test_overlap_is_what_one_contact_reads_of_the_other(contact, fraction, place):
     N, position = contact
@@ -104,7 +99,6 @@ def contact_place(state, p):
     return float(c["first"][p] + weights @ np.arange(layout.STENCIL))
 
 
-@settings(max_examples=30)
 @given(st.floats(0.0, 0.38), st.sampled_from([0.7, -0.7]))
 def test_the_bow_keeps_one_node_from_the_bridge_and_from_the_loop(x_b, F_N):
     run = play({"F_N": F_N, "x_b": x_b}, 2.0 / 44100.0, ledger=False)
@@ -113,7 +107,6 @@ def test_the_bow_keeps_one_node_from_the_bridge_and_from_the_loop(x_b, F_N):
     assert contact_place(run.state, layout.BOW) == pytest.approx(expected, abs=1e-12)
 
 
-@settings(max_examples=30)
 @given(st.floats(0.0, 0.38))
 def test_a_finger_keeps_one_node_from_the_loop_and_stays_before_the_bridge(x_f):
     """Seen by what it reads of a curve: next to the loop the fixed node has no weight."""
@@ -129,10 +122,10 @@ def test_a_finger_keeps_one_node_from_the_loop_and_stays_before_the_bridge(x_f):
 
 
 @pytest.mark.parametrize("string", [0, 1], ids=["F4", "C5"])
-def test_a_bridge_moved_by_a_fifth_of_a_millimetre_moves_the_pitch_a_little(string):
+def test_a_bridge_moved_by_some_tenths_of_a_millimetre_moves_the_pitch_a_little(string):
     """Over more than a grid interval, no step and no turn: x_c is not rounded to a node."""
     rate, guess = 44100.0, (346.0, 517.0)[string]
-    bridge_x = 0.295 + 2e-4 * np.arange(38)
+    bridge_x = 0.295 + 4e-4 * np.arange(19)
     found = []
     for x_c in bridge_x:
         instrument = override(YEHU, {"bridge_x": float(x_c)})
@@ -141,8 +134,8 @@ def test_a_bridge_moved_by_a_fifth_of_a_millimetre_moves_the_pitch_a_little(stri
         run = play({}, 0.25, rate, quantities=instrument, state=state, ledger=False)
         pull = run.probes[2000:, (layout.BRIDGE_FORCE_1, layout.BRIDGE_FORCE_2)[string]]
         found.append(frequency_near(pull, rate, guess))
-    # c/2x: 0.2 mm of 0.3 m is 1.15 cents. Rounding to a node would give 0, and then 40.
+    # c/2x: 0.4 mm of 0.3 m is 2.3 cents. Rounding to a node would give 0, and then 40.
     flattening = -np.diff(cents(found, found[0]))
-    assert flattening.min() > 0.6
-    assert flattening.max() < 1.7
+    assert flattening.min() > 1.2
+    assert flattening.max() < 3.4
     assert np.ptp(cents(found, bridge_x[0] / bridge_x)) < 8.0

@@ -161,25 +161,25 @@ def test_skin_that_hardly_moves_is_a_spring_and_a_dashpot():
 
 @pytest.mark.parametrize("f_n", [0.3, 2.0])
 def test_skin_bears_no_more_than_its_friction_for_long(f_n):
-    forces, lost = dragged(np.full(10000, 0.3), f_n, K_s=600.0, R_s=10.0, mu_s=0.8)
+    forces, lost = dragged(np.full(1000, 3.0), f_n, K_s=600.0, R_s=10.0, mu_s=0.8)
     assert forces[-1] == pytest.approx(0.8 * f_n, rel=1e-9)
     assert lost.min() >= 0.0
     # Until then it yields along Dahl's curve: f over mu f_n is 1 - exp(-K x/(mu f_n)).
-    forces, _ = dragged(np.full(5000, 4e-3), f_n, K_s=600.0, R_s=0.0, mu_s=0.8)
-    x = 4e-3 * (np.arange(5000) + 0.5) / RATE
+    forces, _ = dragged(np.full(1000, 2e-2), f_n, K_s=600.0, R_s=0.0, mu_s=0.8)
+    x = 2e-2 * (np.arange(1000) + 0.5) / RATE
     expected = 0.8 * f_n * -np.expm1(-600.0 * x / (0.8 * f_n))
     np.testing.assert_allclose(forces, expected, atol=2e-5)
 
 
 def test_skin_never_gives_energy_however_it_is_dragged():
     chance, bad = np.random.default_rng(1), []
-    for trial in range(50):
+    for trial in range(20):
         finger = {
             "K_s": 10.0 ** chance.uniform(0.0, 5.0),
             "R_s": chance.choice([0.0, 10.0 ** chance.uniform(-2.0, 3.0)]),
             "mu_s": 10.0 ** chance.uniform(-2.0, 1.0),
         }
-        velocity = chance.normal(0.0, 10.0 ** chance.uniform(-3.0, 1.0), 300)
+        velocity = chance.normal(0.0, 10.0 ** chance.uniform(-3.0, 1.0), 150)
         forces, lost = dragged(velocity, 10.0 ** chance.uniform(-3.0, 1.0), **finger)
         if lost.min() < -1e-12 * np.abs(forces * velocity).max() / RATE:
             bad.append((trial, finger, lost.min()))
@@ -255,8 +255,8 @@ def test_strings_bridge_and_contacts_obey_their_equations():
 # ---------------------------------------------------------------- energy
 
 
-def test_four_seconds_of_playing_create_and_lose_no_energy_in_two_directions():
-    run = play(performance, 4.0, quantities=BOTH)
+def test_two_seconds_of_playing_create_and_lose_no_energy_in_two_directions():
+    run = play(performance, 2.0, quantities=BOTH)
     balanced(run)
     assert run["power_in"].max() > 0.1
     for name in ("strings", "bridge", "finger", "hair", "friction", "bow_lift"):

@@ -23,23 +23,23 @@ def after(*commands: tuple[int, int, float, float]):
 
 def test_a_number_that_is_not_finite_changes_nothing():
     untouched = [record.tobytes() for record in after()]
-    for kind, name in enumerate(KINDS):
-        for numbers in ((math.nan, 0.0), (0.5, math.nan), (math.inf, 0.5)):
-            found = [record.tobytes() for record in after((kind, 1, *numbers))]
-            assert found == untouched, (name, numbers)
+    numbers = ((math.nan, 0.0), (0.5, math.nan), (math.inf, 0.5))
+    wrong = [(kind, 1, *each) for kind in range(len(KINDS)) for each in numbers]
+    assert [record.tobytes() for record in after(*wrong)] == untouched
 
 
 def test_a_value_beyond_its_range_becomes_the_ranges_end():
-    bad = []
-    for index, param in enumerate(TABLE):
-        if param.player_controlled or param.address.startswith("/engine"):
-            continue
-        for turn, kind in enumerate((WRITE, HOLD, EXPRESS), index):
-            beyond = -1e308 if turn % 2 else 1e308
-            player, _ = after((kind, index, beyond, 0.0))
-            if player["value"][index] != (param.lo if beyond < 0.0 else param.hi):
-                bad.append((param.address, kind, beyond))
-    assert not bad
+    some = [
+        (index, param)
+        for index, param in enumerate(TABLE)
+        if not param.player_controlled and not param.address.startswith("/engine")
+    ]
+    for kind in (WRITE, HOLD, EXPRESS):
+        for beyond in (-1e308, 1e308):
+            player, _ = after(*((kind, index, beyond, 0.0) for index, _ in some))
+            ends = {param.address: param.lo if beyond < 0.0 else param.hi for _, param in some}
+            found = {param.address: player["value"][index] for index, param in some}
+            assert found == ends, (kind, beyond)
 
 
 @pytest.mark.parametrize(("pitch", "played"), [(-1e9, LOWEST_NOTE), (1e9, HIGHEST_NOTE)])

@@ -8,14 +8,7 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.core.controls.slots import (
-    FINGER_POSITION,
-    FINGER_PRESS,
-    ONSET,
-    SHARE,
-    SIDE,
-    SPEED,
-)
+from yehu_server.core.controls.slots import FINGER_POSITION, FINGER_PRESS, ONSET, SHARE, SIDE, SPEED
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 

@@ -1,7 +1,5 @@
 """Who is sent what: echoes, changes, errors, and how often."""
 
-from __future__ import annotations
-
 from collections import Counter
 from types import SimpleNamespace
 
@@ -9,10 +7,7 @@ import pytest
 from wire import FakePeer
 
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.osc.clients import (
-    SLICE_S,
-    Clients,
-)
+from yehu_server.live.osc.clients import SLICE_S, Clients
 
 
 @pytest.fixture

@@ -1,7 +1,5 @@
 """Hands on the page ask for the notes and strokes that they play, and leave none behind."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest
@@ -94,9 +92,9 @@ def test_arrow_keys_move_a_finger_that_space_plays_and_draw_the_bow(played) -> N
     assert lifted[0] == "LIFT"
 
 
-def test_keys_play_wherever_the_focus_is_unless_text_is_typed(imitated) -> None:
-    found = drive("page_keys.mjs", imitated)
-    assert found["count"] > 100
+def test_keys_play_wherever_the_focus_is_unless_text_is_typed(imitated, everything) -> None:
+    found = drive("page_keys.mjs", imitated, "1000" if everything else "3")  # of a kind on a tab
+    assert found["count"] > (100 if everything else 50)
     silent = [text for text in found["silent"] if 'type="search"' not in text]
     assert [text for text in silent if 'type="number"' not in text] == []
     assert [text for text in found["written"] if 'type="search"' not in text] == []

@@ -1,7 +1,5 @@
 """A JACK server for each file of tests, a recorder in another process, and `serve`."""
 
-from __future__ import annotations
-
 import contextlib
 import ctypes.util
 import functools
@@ -194,7 +192,7 @@ class Recorder:
         )
         self._expect("ready")
 
-    def connected(self) -> Recorder:
+    def connected(self) -> "Recorder":
         """Wait until every port is connected."""
         self._tell("connect")
         self._expect("connected")

@@ -91,7 +91,7 @@ MIN_LEAP, MAX_LEAP, LONG_S = 4.5, 9.5, 0.3
 # its note in the little time it has. Tried on sixteenths, 8 to 16 a second (scripts/playability.py
 # detached).
 EASY_S, HURRIED_S = 0.16, 0.1
-HURRIED_ATTACK_MS, HURRIED_WEIGHT, HURRIED_RELEASE = 14.0, 0.7, 0.65  # the last two are factors
+HURRIED_ATTACK_MS, HURRIED_WEIGHT, HURRIED_RELEASE = 9.0, 0.7, 0.65  # the last two are factors
 
 
 @compiled_exactly

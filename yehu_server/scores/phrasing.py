@@ -33,7 +33,7 @@ MARKED_SPAN = 12  # between the softest and the loudest
 ARCH, DOWNBEAT, HALF_BAR, BEAT = 100.0, 12.0, 7.0, 4.0
 HIGHER, MAX_HIGHER = 6.0, 50.0
 BETWEEN_MARKS = 0.6  # so much of arches and accents, between the marks of a page
-WIDER = 1.0  # marks lie so much farther from their mean than a page writes them, at full phrasing
+WIDER = 2.0  # marks lie so much farther from their mean than a page writes them, at full phrasing
 # Notes in one bow: so many, each no longer, in steps no wider (semitones), nothing between them.
 MAX_IN_A_BOW, SHORT_S, STEP, GAP_S = 4, 0.3, 4, 0.03
 MIN_FOR_BOWS = 0.25  # of phrasing, from which notes share a bow

@@ -20,6 +20,7 @@ from yehu_server.core.player.parameter_indices import (
     ARTICULATION,
     NOTE_LENGTH,
     PHRASING,
+    RELEASE,
     TREMOLO,
     TREMOLO_DEPTH,
     VARIATION,
@@ -27,8 +28,10 @@ from yehu_server.core.player.parameter_indices import (
 from yehu_server.core.player.parameter_indices import ATTACK as ATTACK_MS
 from yehu_server.core.player.phrasing import (
     HURRIED_ATTACK_MS,
+    HURRIED_RELEASE,
     USUAL_PHRASING,
     deviate,
+    hurried,
 )
 from yehu_server.core.player.velocity import struck_attack
 from yehu_server.params.articulations import ARTICULATIONS, Articulation
@@ -41,7 +44,10 @@ USUAL_S = 1.2
 SHORT_ATTACK, LONG_ATTACK, LONG_S, UNEVEN_ATTACK = 0.8, 3.4, 1.2, 0.3
 # The same of a bow that turns: the level falls by some 10 dB then, a fiddle's by 5 to 15;
 # in twice this time by 16 (scripts/liveliness.py).
-TURNING = 0.5
+TURNING = 0.4
+# How much longer the bow takes to leave the string after a note of LONG_S, so that there is no hole
+# between phrases (scripts/liveliness.py: dips of 28 to 34 dB without).
+EASED_RELEASE = 0.9
 MIN_STOPPED_PITCH = 65.6  # MIDI note: a finger there is over 8 mm from the loop
 STEPS_FRACTION = 0.7  # of a note, for steps that have times of their own
 # The level is this power of the bow's factor, on top of what a faster bow gives, as with dynamics.
@@ -282,6 +288,16 @@ def attack_ms(p: Any) -> float:
     """The time in which a lifted bow reaches its speed and force."""
     usual = p.value[ATTACK_MS] * struck_attack(p) * p.gesture.attack
     return float(usual + p.hurry * min(HURRIED_ATTACK_MS - usual, 0.0))
+
+
+@compiled_exactly
+def release_ms(p: Any, c: Any) -> float:
+    """The time in which the bow leaves the string: longer after a long note, as phrasing says."""
+    long = min((c.frame - p.note_began) / (LONG_S * p.rate), 1.0)
+    eased = min(p.value[PHRASING] / USUAL_PHRASING, 1.5) * EASED_RELEASE * long
+    if p.gesture.row != ORDINARY:
+        eased = 0.0
+    return float(p.value[RELEASE] * hurried(p, HURRIED_RELEASE) * (1.0 + eased))
 
 
 @compiled_exactly

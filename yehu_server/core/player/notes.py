@@ -25,6 +25,7 @@ from yehu_server.core.player.gestures import (
     attack_ms,
     begin_gesture,
     begin_slide,
+    release_ms,
     tremolo_of,
 )
 from yehu_server.core.player.gestures import FINGER_COUNT as FINGER_STEP_COUNT
@@ -53,15 +54,12 @@ from yehu_server.core.player.parameter_indices import (
     PORTAMENTO_TIME,
     POSITION,
     PRESSURE,
-    RELEASE,
     SMOOTH_MS,
     VOLUME,
 )
 from yehu_server.core.player.phrasing import (
-    HURRIED_RELEASE,
     SCOOP_MS,
     STEP_MS,
-    hurried,
     hurry_of,
     scoop_of,
     slide_of_leap_ms,
@@ -121,9 +119,9 @@ def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
         sound_last(p, c, True, False)
     else:
         p.sounding = SILENT
-        release_ms = p.value[RELEASE] * hurried(p, HURRIED_RELEASE)
-        stroke_contours.end_contours(p, c, release_ms)
-        right_hand.lift(p, c, release_ms)
+        ends_in_ms = release_ms(p, c)
+        stroke_contours.end_contours(p, c, ends_in_ms)
+        right_hand.lift(p, c, ends_in_ms)
         vibrato.end_vibrato(p, c)
 
 

@@ -30,11 +30,11 @@ from yehu_server.core.player.stroke_contours import (
 # how far partials move in recordings (scripts/liveliness.py).
 USUAL_SWAY, USUAL_VARIATION = 0.5, 0.25
 WANDERS = 0.85  # standard deviation of the wandering
-SHORTEST_S, LONGEST_S = 0.5, 1.4  # from one side to the other
+SHORTEST_S, LONGEST_S = 0.45, 1.1  # from one side to the other
 STROKE, UNEVEN = np.array((1.0, -0.85)), 0.5  # of a stroke of WHOLE_S; their standard deviation
 WHOLE_S, OPEN_S = 0.5, 0.7  # a note of unknown length swings in the latter
 BACK = 0.9  # of the last swing, in a slurred note
-FARTHEST = 1.0  # of the measured sound's amplitude
+FARTHEST = 1.2  # of the measured sound's amplitude
 SWAY_FROM = CONTOURS_FROM + (1 << 29)  # of the seed's numbers
 
 SWAY_STATE = np.dtype(

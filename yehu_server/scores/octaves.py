@@ -97,7 +97,8 @@ def _are_outside(notes: Sequence[NoteSpan], within: NoteRange) -> Array:
 
 def _starts(notes: Sequence[NoteSpan], rest: float) -> list[int]:
     """The number of each phrase's first note."""
-    starts, until = [], -math.inf
+    starts: list[int] = []
+    until = -math.inf
     for number, (begin, end, _) in enumerate(notes):
         if not starts or begin - until >= rest:
             starts.append(number)

@@ -5,7 +5,8 @@
 
 `yehu-server serve` plays with --record and --capture. Another process sends dense OSC and MIDI, and
 OSCQuery clients listen to every address. An idle stream on the same device shows which deadlines
-the machine itself misses. Memory is sampled every few seconds. In the end the capture is replayed
+the machine itself misses, and a program that only receives the same OSC how much of it the machine
+gives to Python too late. Memory is sampled every few seconds. In the end the capture is replayed
 and compared with the recording, sample by sample. Without --audio-device the benchmark starts a
 JACK server with the dummy driver, which has no real-time rights. Each bound is judged, and the exit
 code is 1 where one is missed.
@@ -21,6 +22,7 @@ import json
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -40,23 +42,29 @@ from load import CARD, helper, loaded, sound_card
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import warm_up
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.audio.output import NULL, Output, OutputOptions
+from yehu_server.system.sockets import prepare, receive
 
 STARTED_WITHIN_S, ENDED_WITHIN_S = 120.0, 60.0
 SETTLED_S = 8.0  # also what pages need is prepared by then
 SAMPLE_EVERY_S = 10.0
 PAGES = 8
+RATE = 48000  # of the dummy device
+RECEIVED = ("received", "late")
 CALLBACKS = ("callbacks", "missed", "late_callbacks", "underruns")
 COUNTERS = (
     *("frame", "missed_deadlines", "late_callbacks", "underruns", "device_losses"),
     *("applied_events", "late_events", "dropped_events", "unconverged_solves", "lost_states"),
-    *("osc_messages", "osc_dropped", "osc_failures", "midi_messages", "midi_malformed"),
+    *("osc_messages", "osc_dropped", "osc_failures"),
+    *("midi_messages", "midi_late", "midi_malformed"),
     *("http_failures", "http_unsent"),
 )
-SHOWN = ("missed_deadlines", "late_callbacks", "underruns", "late_events", "applied_events")
+SHOWN = ("missed_deadlines", "late_callbacks", "underruns", "late_events", "midi_late")
 COMPARED_FRAMES = 1 << 20
 NONE = ("dropped_events", "osc_dropped", "osc_failures", "lost_states", "http_failures")
-MORE_LATE, MORE_MEMORY_MB = 0.001, 5.0  # beyond the idle stream's misses; since the second quarter
+MORE_LATE = 0.001  # beyond what the idle stream misses, and the idle receiver gets late
+MORE_MEMORY_MB = 5.0  # since the second quarter
 
 
 # ---------------------------------------------------------------- beside the instrument
@@ -74,6 +82,31 @@ def play_idle(device: str, blocksize: int, answer: Any) -> None:
             break
     output.end()
     os._exit(0)
+
+
+def receive_idle(block_ms: float, answer: Any) -> None:
+    """Receive OSC and do nothing; answer each request with messages received, and how many late.
+
+    A request is the server's delay (ms). Late is what is read, after the kernel has it, when a
+    server that took no time could not have played it in time: a block has begun, at some moment
+    of the delay's last `block_ms`.
+    """
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    udp.bind(("127.0.0.1", 0))
+    prepare(udp, limits.SOCKET_BUFFER)
+    delay_ms, counts = float("inf"), {"received": 0, "late": 0.0}
+
+    def receive_all() -> None:
+        while True:
+            stamp_ns = receive(udp, limits.DATAGRAM).stamp_ns
+            left_ms = delay_ms - 1e-6 * (time.time_ns() - stamp_ns)
+            counts["received"] += 1
+            counts["late"] += min(1.0, max(0.0, 1.0 - left_ms / block_ms))
+
+    threading.Thread(target=receive_all, daemon=True).start()
+    answer.send(udp.getsockname()[1])
+    while delay_ms := answer.recv():
+        answer.send(dict(counts))
 
 
 def listen(port: int, answer: Any) -> None:
@@ -198,30 +231,41 @@ def replayed_equal(folder: Path) -> tuple[int, int]:
 # ---------------------------------------------------------------- the whole
 
 
+def counted(idle: Any, receiver: Any, playing: Playing) -> tuple[Any, Any, dict[str, float]]:
+    """The counts of idle stream, idle receiver and instrument, as they are now."""
+    status = playing.status()
+    idle.send(True)
+    receiver.send(status["delay_ms"])
+    return idle.recv(), receiver.recv(), status
+
+
 def play(
     device: str, blocksize: int, seconds: float, folder: Path, *, parts: int = 1
 ) -> dict[str, Any]:
     """Play under load, replay the take, and return all counts."""
-    with helper(play_idle, device, blocksize) as idle:
+    with (
+        helper(play_idle, device, blocksize) as idle,
+        helper(receive_idle, 1e3 * blocksize / RATE) as receiver,
+    ):
         idle.recv()
+        beside = receiver.recv()
         words = ["--record", str(folder / "take.wav"), "--capture", str(folder / "take.jsonl")]
         playing = Playing(device, blocksize, "--parts", str(parts), "--no-panel", *words)
-        with helper(listen, playing.http) as pages, loaded(playing.osc, parts):
+        with helper(listen, playing.http) as pages, loaded(playing.osc, parts, beside):
             time.sleep(SETTLED_S)
-            idle.send(True)
-            idle_before, before = idle.recv(), playing.status()
+            idle_before, received_before, before = counted(idle, receiver, playing)
             samples, started = [], time.monotonic()
             while (left := started + seconds - time.monotonic()) > 0.0:
                 time.sleep(min(SAMPLE_EVERY_S, left))
                 samples.append((time.monotonic() - started, playing.memory_mb()))
                 if playing.process.poll() is not None:
                     sys.exit("serve ended:\n" + "\n".join(playing.lines))
-            idle.send(True)
-            idle_after, after = idle.recv(), playing.status()
+            idle_after, received_after, after = counted(idle, receiver, playing)
             pages.send(None)
             sent, malformed = pages.recv(), playing.malformed()
         code = playing.end()
-        idle.send(False)
+        for each in (idle, receiver):
+            each.send(False)
     frames, differing = replayed_equal(folder)
     return {
         "exit_code": code,
@@ -231,6 +275,7 @@ def play(
         "load": after["load"],
         "worst_load": after["worst_load"],
         "idle_stream": {what: idle_after[what] - idle_before[what] for what in CALLBACKS},
+        "idle_receiver": {what: received_after[what] - received_before[what] for what in RECEIVED},
         "sent_to_pages": sent,
         "memory_mb": [[round(at_s), mb] for at_s, mb in samples],
         "recorded_frames": frames,
@@ -255,6 +300,8 @@ def print_figures(figures: dict[str, Any]) -> None:
     """Print what is beside the table."""
     print(", ".join(f"{what} {count}" for what, count in figures["instrument"].items()))
     print(f"last malformed MIDI: {figures['midi_malformed_last'] or 'none'}")
+    receiver = figures["idle_receiver"]
+    print(f"idle receiver: {receiver['late']:.0f} late of {receiver['received']} messages")
     print(f"load {figures['load']:.3f}, worst {figures['worst_load']:.3f}")
     if None not in [mb for _, mb in figures["memory_mb"]]:
         shown = ", ".join(f"{mb:.0f}" for mb in quarters(figures["memory_mb"]))
@@ -268,12 +315,16 @@ def print_figures(figures: dict[str, Any]) -> None:
 def judged(figures: dict[str, Any]) -> dict[str, dict[str, Any]]:
     """Each bound: what was found, the most that may be, and whether it passes."""
     own, idle = figures["instrument"], figures["idle_stream"]
-    late = own["late_events"] / max(1, own["midi_messages"] + own["osc_messages"])
+    late_osc = (own["late_events"] - own["midi_late"]) / max(1, own["osc_messages"])
+    late_midi = own["midi_late"] / max(1, own["midi_messages"])
     misses = (idle["missed"] + idle["late_callbacks"]) / max(1, idle["callbacks"])
+    receiver = figures["idle_receiver"]
+    unread = receiver["late"] / max(1, receiver["received"])
     bounds: dict[str, tuple[float, float]] = {
         what.replace("_", " "): (own[what], 0) for what in NONE
     }
-    bounds["share of events that came late"] = late, misses + MORE_LATE
+    bounds["share of MIDI that came late"] = late_midi, misses + MORE_LATE
+    bounds["share of OSC that came late"] = late_osc, misses + unread + MORE_LATE
     memory = figures["memory_mb"]
     if len(memory) >= 4 and None not in [mb for _, mb in memory]:
         _, second, *_, last = quarters(memory)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import collections
 import contextlib
 import ctypes.util
+import itertools
 import multiprocessing
 import os
 import random
@@ -97,13 +98,17 @@ class MidiOut:
         self._client.close()
 
 
-def send_load(port: int, parts: int = 1) -> None:
+def send_load(port: int, parts: int = 1, beside: int | None = None) -> None:
     """Send notes, wheels and touch over MIDI, 600 messages a second; over OSC 2,000.
 
-    Each part has an output of its own, and they are sent to in turn.
+    Each part has an output of its own, and they are sent to in turn. The port `beside` is sent the
+    same OSC.
     """
-    osc = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    osc.connect(("127.0.0.1", port))
+    sockets = []
+    for to in (port, beside):
+        if to is not None:
+            sockets.append(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+            sockets[-1].connect(("127.0.0.1", to))
     outs = [MidiOut("load" if parts == 1 else f"load {part + 1}") for part in range(parts)]
     prefixes = [f"/yehu/part/{part + 1}" for part in range(parts)] if parts > 1 else ["/yehu"]
     chance = random.Random(1)  # noqa: S311
@@ -117,18 +122,20 @@ def send_load(port: int, parts: int = 1) -> None:
             midi, prefix = outs[step % parts], prefixes[step % parts]
             for message in ([0xE0, chance.randrange(128)], [0xD0], [0xB0, 1]):
                 midi.send([*message, chance.randrange(128)])
-            with contextlib.suppress(ConnectionRefusedError):
-                for _ in range(5):
-                    osc.send(pack(f"{prefix}/bow/position", chance.uniform(0.05, 0.2)))
-                    osc.send(pack(f"{prefix}/playing/pressure", chance.uniform(0.2, 0.6)))
+            for _ in range(5):
+                position = pack(f"{prefix}/bow/position", chance.uniform(0.05, 0.2))
+                pressure = pack(f"{prefix}/playing/pressure", chance.uniform(0.2, 0.6))
+                for osc, packet in itertools.product(sockets, (position, pressure)):
+                    with contextlib.suppress(ConnectionRefusedError):
+                        osc.send(packet)
             due += 0.005
             time.sleep(max(0.0, due - time.monotonic()))
 
 
 @contextlib.contextmanager
-def loaded(port: int, parts: int = 1) -> Iterator[None]:
-    """Within the block, another process sends the load."""
-    sender = SPAWN.Process(target=send_load, args=(port, parts), daemon=True)
+def loaded(port: int, parts: int = 1, beside: int | None = None) -> Iterator[None]:
+    """Within the block, another process sends the load; see `send_load`."""
+    sender = SPAWN.Process(target=send_load, args=(port, parts, beside), daemon=True)
     sender.start()
     try:
         yield

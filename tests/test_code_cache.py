@@ -10,12 +10,14 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from types import SimpleNamespace
 
 import numba
 import pytest
 
 from yehu_server.compile import cache_folder, jit, levels, machine_code, numba_compiler
 from yehu_server.compile import function_cache as cache
+from yehu_server.system import files
 from yehu_server.util import checksummed
 from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 
@@ -320,6 +322,41 @@ def test_nothing_is_read_from_a_folder_of_another_user_or_that_all_may_write_to(
         monkeypatch.setattr(cache_folder, "IS_TRUSTED", is_trusted)
         assert machine_code.loaded.__wrapped__(own_folder, "") == {}
         assert ("it is damaged" in caplog.text) == is_trusted
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no users")
+@pytest.mark.parametrize(
+    ("mode", "is_shared"),
+    [(0o700, False), (0o755, False), (0o775, True), (0o777, True), (0o1777, None)],
+)
+def test_nor_where_a_group_may_write_or_put_another_folder_in_its_place(
+    own_folder, tmp_path, monkeypatch, mode, is_shared
+):
+    monkeypatch.setattr(files, "_is_private", lambda _group: False)
+    link = tmp_path / "link"
+    link.symlink_to(own_folder.parent / "elsewhere" / "code")
+    (around := link.readlink().parent).mkdir()
+    link.readlink().mkdir(0o700)
+    own_folder.chmod(mode)
+    assert files.may_others_write(own_folder) == (is_shared is not False)
+    own_folder.chmod(0o700)
+    around.chmod(mode)
+    assert files.may_others_write(link) == bool(is_shared)  # in a sticky one nobody replaces it
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no users")
+@pytest.mark.parametrize(
+    ("name", "members", "is_private"),
+    [("me", [], True), ("me", ["me"], True), ("me", ["me", "you"], False), ("users", [], False)],
+)
+def test_a_group_of_its_own_is_a_users_who_is_alone_in_it(monkeypatch, name, members, is_private):
+    import grp
+    import pwd
+
+    monkeypatch.setattr(pwd, "getpwuid", lambda _user: SimpleNamespace(pw_name="me"))
+    group = SimpleNamespace(gr_name=name, gr_mem=members)
+    monkeypatch.setattr(grp, "getgrgid", lambda _group: group)
+    assert files._is_private(1000) is is_private
 
 
 def test_folders_of_older_sources_are_removed_and_no_others(own_folder):

@@ -12,11 +12,14 @@ const VERSION = "";
 const FILES = [];
 
 const worker = /** @type {any} */ (globalThis);
-const PREFIX = "yehu ";
+const PREFIX = `yehu ${worker.registration.scope} `; // other copies of the page may share its origin
 const OWN = PREFIX + VERSION;
 
 worker.addEventListener("install", (/** @type {any} */ event) => {
-  if (!VERSION) return;
+  if (!VERSION) {
+    worker.skipWaiting(); // a server shows this page, where another was kept before
+    return;
+  }
   const requests = FILES.map(
     ([file, integrity]) => new Request(file, { cache: "no-cache", integrity }),
   );

@@ -111,6 +111,7 @@ def test_what_is_set_up_is_set_up_once_in_each_process_and_by_one_at_a_time(own,
 @pytest.mark.slow
 def test_a_worker_that_comes_later_works_too(own):
     own.add_worker()
+    until(lambda: workers_of(own) == 1, within_s=LONG_S)
     with Cluster(str(own.file)) as cluster:
         events = cluster.perform_all(some_jobs.slow, [0.2] * 60)
         pids = {next(events).result}
@@ -126,6 +127,7 @@ def test_a_worker_that_comes_later_works_too(own):
 def test_what_a_stranger_has_workers_and_scheduler_send_runs_nothing_here(own, tmp_path):
     touched = tmp_path / "touched"
     own.add_worker()
+    until(lambda: workers_of(own) == 1, within_s=LONG_S)
     with Cluster(str(own.file)) as cluster:
         connected = cluster._client
         # What workers print and warn of reaches all clients, as a pickle.
@@ -148,7 +150,8 @@ def copy(tmp_path) -> Path:
     """A folder with another version of the package: what a worker needs of it, and a change."""
     package = Path(yehu_server.__file__).parent
     other = tmp_path / "other" / "yehu_server"
-    shutil.copytree(package / "util", other / "util")
+    for folder in ("util", "system"):
+        shutil.copytree(package / folder, other / folder)
     modules = ("compile/__init__", "compile/levels", "rendering/__init__", "rendering/workers")
     for name in ("__init__", "errors", *modules):
         (other / name).parent.mkdir(exist_ok=True)
@@ -161,6 +164,7 @@ def copy(tmp_path) -> Path:
 @pytest.mark.slow
 def test_a_worker_of_another_version_is_refused_in_one_line(own, copy):
     own.add_worker(PYTHONPATH=str(copy))
+    until(lambda: workers_of(own) == 1, within_s=LONG_S)
     with pytest.raises(YehuError, match=r"tcp://.* has yehu-server .*: install the same") as error:
         Cluster(str(own.file)).__enter__()
     assert "\n" not in str(error.value)
@@ -171,6 +175,7 @@ def test_workers_without_the_package_are_reported(own, tmp_path):
     (tmp_path / "yehu_server").mkdir()
     (tmp_path / "yehu_server" / "__init__.py").touch()
     own.add_worker(PYTHONPATH=str(tmp_path))
+    until(lambda: workers_of(own) == 1, within_s=LONG_S)
     with pytest.raises(YehuError, match="yehu-server is not installed there"):
         Cluster(str(own.file)).__enter__()
 

@@ -186,7 +186,7 @@ def page_module() -> Path:
 
 def _is_others(folder: Path) -> bool:
     """Whether others may write to a folder, where it is there."""
-    return folder.is_dir() and may_others_write(folder.stat())
+    return folder.is_dir() and may_others_write(folder)
 
 
 def _found(folder: Path) -> Path | None:

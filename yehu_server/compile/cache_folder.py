@@ -69,17 +69,12 @@ def data_folder() -> Path:
 OTHERS = "others may write there, and its code would be run"
 
 
-def _is_others(folder: Path) -> bool:
-    """Whether another user, but for root, may write to a folder."""
-    return may_others_write(folder.stat())
-
-
 def _open_cache() -> str:
     """Make the cache folder and drop what older sources left; return why nothing can be kept."""
     folder = cache_folder()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if _is_others(folder):
+        folder.mkdir(0o700, parents=True, exist_ok=True)
+        if may_others_write(folder):
             return OTHERS
         os.utime(folder)
         for other in folder.parent.glob(PREFIX + 16 * DIGIT):

@@ -129,21 +129,27 @@ class PartState:
         """The value that a parameter has or moves to; raises ParameterError where there is none."""
         param = find(address)
         pending = self._waiting(param)
-        if pending is not None:
-            return pending.value
-        if param.player_controlled:
-            return self.instrument.target(param.address)
-        return float(self.record["value"][INDEX[param.address]])
+        return self._had(param, self.record["value"]) if pending is None else pending.value
 
     def values(self) -> dict[str, float]:
         """The values of all parameters, by address."""
-        return {param.address: self.value(param.address) for param in TABLE}
+        waiting = {one: self._waiting(find(one)) for one in list(self.pending)}
+        values = self.record["value"].tolist()  # now: it has what has stopped waiting
+        found = {param.address: self._had(param, values) for param in TABLE}
+        return found | {one: pending.value for one, pending in waiting.items() if pending}
+
+    def _had(self, param: Param, values: Sequence[float]) -> float:
+        """The value that the audio side has; `values` are those of the record."""
+        if param.player_controlled:
+            return self.instrument.target(param.address)
+        return float(values[INDEX[param.address]])
 
     def keeps(self, address: str) -> bool:
         """Whether a parameter was written with ``hold``."""
-        pending = self._waiting(find(address))
-        is_held = pending is not None and pending.is_held
-        return is_held or bool(self.record["is_held"][INDEX[find(address).address]])
+        param = find(address)
+        pending = self.pending.get(param.address)
+        is_held = pending is not None and pending.is_held and self._waiting(param) is not None
+        return is_held or bool(self.record["is_held"][INDEX[param.address]])
 
     def expect(self, values: Values[str, float], frame: int | None) -> None:
         """Answer with these values, but for held ones, until the audio side has what sets them."""

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cache
+from operator import attrgetter
 from typing import Any
+
+import numpy as np
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.player.note_range import YEHU, NoteRange
@@ -135,42 +138,51 @@ def midi_in_range(
     is that of `within`. Only what `channels` play moves, by default all but percussion.
     """
     channels = MELODIC if channels is None else channels
-    tuned = transposed_keys(score)
+    tuned, events = transposed_keys(score), list(score.events)
     by_part: dict[str, list[ScoreNote]] = {}
+    by_place: dict[tuple[int, int], list[ScoreNote]] = {}  # the same, by channel and track
     find = finder_of(score.parts)
-    for note in notes_of(score):
-        if note.channel not in channels:
-            continue
-        at = find(note.channel, score.events[note.begins].track)
-        own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
-        by_part.setdefault("" if is_mpe else own_name, []).append(note)
-    events = list(score.events)
-    moved: dict[tuple[int, int], Any] = {}  # messages, by those they were and semitones
+    notes = [note for note in notes_of(score) if note.channel in channels]
+    for note in notes:
+        place = note.channel, events[note.begins].track
+        if place not in by_place:
+            at = find(*place)
+            own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
+            by_place[place] = by_part.setdefault("" if is_mpe else own_name, [])
+        by_place[place].append(note)
+    struck = np.zeros(len(events) + 1, bool)  # of each event; -1 is none
+    struck[_column(notes, "begins")] = struck[-1] = True
+    moves = np.zeros(len(events), np.int64)  # octaves, of each event
     parts = []
     for name, own in by_part.items():
-        pitches = [note.key + tuned.get(note.begins, 0.0) for note in own]
-        spans = [NoteSpan(n.start_s, n.end_s, (p,)) for n, p in zip(own, pitches, strict=True)]
-        octaves = octaves_of(spans, REST_S, within)
+        spans = [(n.start_s, n.end_s, (n.key + tuned.get(n.begins, 0.0),)) for n in own]
+        octaves = octaves_of([*map(NoteSpan._make, spans)], REST_S, within)
         if octaves.summary:
             parts.append((name, octaves))
-        for note, by in zip(own, octaves.of_notes, strict=True):
-            if not by or not 0 <= note.key + 12 * by <= 127:
-                continue
-            for number in (note.begins, note.ends):
-                time_s, message, beat, track = events[number]
-                is_strike = message.type == "note_on" and message.velocity > 0
-                if number < 0 or (is_strike and number != note.begins):  # the key struck again
-                    continue
-                higher = moved.get((id(message), by))
-                if higher is None:
-                    higher = moved[id(message), by] = transposed(message, 12 * by)
-                events[number] = ScoreEvent(time_s, higher, beat, track)
-    if not moved:
+        by, keys = np.array(octaves.of_notes), _column(own, "key")
+        by[(keys + 12 * by < 0) | (keys + 12 * by > 127)] = 0
+        ends = _column(own, "ends")
+        moves[_column(own, "begins")] = by
+        moves[ends[~struck[ends]]] = by[~struck[ends]]  # not where the key is struck again
+    if not moves.any():
         return score
+    moved: dict[tuple[int, int], Any] = {}  # messages, by those they were and octaves
+    numbers = moves.nonzero()[0]
+    for number, octave in zip(numbers.tolist(), moves[numbers].tolist(), strict=True):
+        time_s, message, beat, track = events[number]
+        higher = moved.get((id(message), octave))
+        if higher is None:
+            higher = moved[id(message), octave] = transposed(message, 12 * octave)
+        events[number] = ScoreEvent._make((time_s, higher, beat, track))
     is_one = len(by_part) == 1
     line = line_of([("" if is_one else name, octaves) for name, octaves in parts], within)
     remarks = (*score.remarks, *filter(None, (line,)))
     return replace(score, events=tuple(events), remarks=remarks)
+
+
+def _column(notes: Sequence[ScoreNote], name: str) -> Any:
+    """A number of each note [shape=(notes,)]."""
+    return np.fromiter(map(attrgetter(name), notes), np.int64, len(notes))
 
 
 def finder_of(parts: Sequence[ScorePart]) -> Callable[[int, int], int | None]:

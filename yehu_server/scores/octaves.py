@@ -7,15 +7,20 @@ who moves each note by itself, as in live playing.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.note_range import YEHU, NoteRange
 
+Array = Any
+
 FARTHEST = 5  # octaves
+OCTAVES = range(-FARTHEST, FARTHEST + 1)
 NUMBERS = ("", "an octave", "two octaves", "three octaves", "four octaves", "five octaves")
 
 
@@ -58,56 +63,46 @@ def octaves_of(notes: Sequence[NoteSpan], rest: float, within: NoteRange = YEHU)
     Notes come in the order of their beginnings. A silence of `rest`, in their unit, parts phrases;
     the instrument has the notes `within`.
     """
-    of_all = _ends(notes)
-    whole = _best(of_all, 0, within)
-    phrases = _phrases(notes, rest)
-    of_notes: list[int] = []
-    others = outside = 0
-    for phrase in phrases:
-        ends = of_all if len(phrases) == 1 else _ends(phrase)
-        own = _best(ends, whole, within)
-        others += own != whole
-        outside += _outside(ends, own, within)
-        of_notes += [own] * len(phrase)
-    return Octaves(tuple(of_notes), whole, len(phrases), others, outside)
+    starts = _starts(notes, rest)
+    if not starts:
+        return Octaves((), 0, 0, 0, 0)
+    outside = np.add.reduceat(_are_outside(notes, within), starts, axis=1, dtype=np.int64)
+    whole = int(_best(outside.sum(axis=1), 0))
+    own = _best(outside, whole)
+    others, left = (own != whole).sum(), outside[own + FARTHEST, np.arange(len(own))].sum()
+    of_notes = np.repeat(own, np.diff(starts, append=len(notes))).tolist()
+    return Octaves(tuple(of_notes), whole, len(starts), int(others), int(left))
 
 
-_Ends = Mapping[tuple[float, float], int]
+def _best(outside: Array, preferred: int) -> Array:
+    """The octaves that leave the fewest notes outside, and of these the nearest to `preferred`.
+
+    `outside`: numbers of notes [shape=(2 FARTHEST + 1, ...)], by octaves from -FARTHEST.
+    """
+    nearest = np.array(sorted(OCTAVES, key=lambda octaves: (abs(octaves - preferred), -octaves)))
+    return nearest[outside[nearest + FARTHEST].argmin(axis=0)]
 
 
-def _ends(notes: Sequence[NoteSpan]) -> _Ends:
-    """How many notes have each lowest and highest pitch; those without a pitch are left out."""
-    ends: Counter[tuple[float, float]] = Counter()
-    for pitches, count in Counter(n.pitches for n in notes if n.pitches).items():
-        ends[min(pitches), max(pitches)] += count
-    return ends
+def _are_outside(notes: Sequence[NoteSpan], within: NoteRange) -> Array:
+    """Whether each note is outside the range, moved by each of OCTAVES; one without pitches not."""
+    kinds: dict[tuple[float, ...], int] = {}
+    kind = np.array([kinds.setdefault(note.pitches, len(kinds)) for note in notes])
+    low, high = (np.array([end(p, default=math.nan) for p in kinds]) for end in (min, max))
+    moved = 12.0 * np.array(OCTAVES)[:, None]
+    fits = (within.lowest - OPEN_WITHIN - moved < low) & (
+        high < within.highest + OPEN_WITHIN - moved
+    )
+    return (~fits & ~np.isnan(low))[:, kind]
 
 
-def _best(ends: _Ends, preferred: int, within: NoteRange) -> int:
-    """The octaves that leave the fewest notes outside, and of these the nearest to `preferred`."""
-
-    def cost(octaves: int) -> tuple[int, int, int]:
-        return _outside(ends, octaves, within), abs(octaves - preferred), -octaves
-
-    if not _outside(ends, preferred, within):
-        return preferred
-    return min(range(-FARTHEST, FARTHEST + 1), key=cost)
-
-
-def _outside(ends: _Ends, octaves: int, within: NoteRange) -> int:
-    """Number of notes outside the range, when moved by so many octaves."""
-    lowest = within.lowest - OPEN_WITHIN - 12.0 * octaves
-    highest = within.highest + OPEN_WITHIN - 12.0 * octaves
-    return sum(count for (low, high), count in ends.items() if not lowest < low <= high < highest)
-
-
-def _phrases(notes: Sequence[NoteSpan], rest: float) -> list[list[NoteSpan]]:
-    phrases: list[list[NoteSpan]] = []
-    end = 0.0
-    for note in notes:
-        if not phrases or note.begin - end >= rest:
-            phrases.append([])
-            end = note.end
-        phrases[-1].append(note)
-        end = max(end, note.end)
-    return phrases
+def _starts(notes: Sequence[NoteSpan], rest: float) -> list[int]:
+    """The number of each phrase's first note."""
+    starts: list[int] = []
+    until = -math.inf
+    for number, (begin, end, _) in enumerate(notes):
+        if not starts or begin - until >= rest:
+            starts.append(number)
+            until = end
+        elif end > until:
+            until = end
+    return starts

@@ -233,25 +233,21 @@ def notes_of(score: Score) -> list[ScoreNote]:
 
 
 def _paired(score: Score) -> Iterator[ScoreNote]:
-    events = score.events
-    held: dict[tuple[int, int], int] = {}
-    ends: dict[int, int] = {}  # by the number of a note-on
-    for number, (_, message, _, _) in enumerate(events):
+    held: dict[tuple[int, int], list[Any]] = {}
+    found: list[list[Any]] = []
+    for number, (time_s, message, beat, _) in enumerate(score.events):
         kind = message.type
         if kind not in ("note_on", "note_off"):
             continue
-        key = (message.channel, message.note)
+        key = channel, note = message.channel, message.note
         if key in held:
-            ends[held.pop(key)] = number
-        if kind == "note_on" and message.velocity > 0:
-            held[key] = number
-            ends[number] = -1
-    for number, end in ends.items():
-        start_s, message, beat, _ = events[number]
-        end_s = events[end].time_s if end >= 0 else score.duration_s
-        yield ScoreNote(
-            number, end, message.channel, message.note, message.velocity, start_s, end_s, beat
-        )
+            begun = held.pop(key)
+            begun[1], begun[6] = number, time_s
+        if kind == "note_on" and (velocity := message.velocity) > 0:
+            begun = [number, -1, channel, note, velocity, time_s, score.duration_s, beat]
+            held[key] = begun
+            found.append(begun)
+    return map(ScoreNote._make, found)
 
 
 def says_mpe(score: Score) -> bool:

@@ -111,7 +111,8 @@ def test_the_last_that_is_no_message_is_in_the_status(live, until):
     ring = SharedRing(live.server.output.memory.buffer, ring_place(MIDI_INPUTS, 0))
     assert ring.post(0, MESSAGE, packed([0xD0, 0x4A, 0x11], 0))
     until(lambda: live.server.status()["midi_malformed"] == 1, "it to be counted")
-    assert live.server.status()["midi_malformed_last"] == "d0 4a 11"
+    status = live.server.status()
+    assert (status["midi_malformed_last"], status["midi_late"]) == ("d0 4a 11", 1)
 
 
 def test_threads_of_several_inputs_lose_nothing(shared):

@@ -10,6 +10,7 @@ from wire import Message, Wire
 
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.peers import WebTraffic
+from yehu_server.live.web.frames import frame_of
 from yehu_server.live.web.server import WebOptions
 from yehu_server.live.web.web_sockets import WebPeer
 
@@ -215,21 +216,22 @@ def test_what_a_peer_does_not_take_is_dropped_and_counted():
         call_later=lambda _s, call: later.append(call),
     )
     peer = WebPeer("deaf", transport, loop, traffic)
-    for _ in range(3 * limits.UNSENT // 1000):
-        peer.send(bytes(1000))
-    assert len(calls) == limits.UNSENT // 1000 + 1  # the web's thread takes none
-    assert traffic.unsent == 3 * limits.UNSENT // 1000 - len(calls)
+    for number in range(3 * limits.UNSENT // 1000):
+        peer.send(bytes([number % 256]) * 1000)
+    most = limits.UNSENT // 1000 + 1
+    assert traffic.unsent == 3 * limits.UNSENT // 1000 - most  # the web's thread takes none
     assert not peer.takes_more
-    for call, packet in calls:
-        call(packet)
-    assert len(sent) == len(calls)
+    (call,) = calls.pop()  # it is called once, and writes at once, for all
+    call()
+    (written,) = sent
+    assert written == b"".join(frame_of(bytes([n % 256]) * 1000) for n in range(most))
     assert peer.takes_more
     unsent = limits.UNSENT + 1  # the other end reads none
     peer.write(b"")
     assert not peer.takes_more
     dropped = traffic.unsent
     peer.send(b"lost")
-    assert traffic.unsent == dropped + 1
+    assert (traffic.unsent, calls) == (dropped + 1, [])
     unsent = 0
     (measure,) = later
     measure()

@@ -17,6 +17,7 @@ from yehu_server.core.engine.mailbox import (
     KIND_BITS,
     LIVE_BUDGET,
     LIVE_INTAKE,
+    MIDI_INPUTS,
     RING,
     SERVER,
     UNLIMITED,
@@ -206,6 +207,11 @@ class Instrument:
     def dropped_events(self) -> int:
         """Number of events dropped, since the start: a ring was full, or a time too far ahead."""
         return int(self._rig["mail"]["dropped"][0, :, 0].sum())
+
+    @property
+    def late_midi(self) -> int:
+        """Number of MIDI messages that came after their frame, since the start."""
+        return int(self._rig["mail"]["late"][0, MIDI_INPUTS])
 
     @property
     def delay(self) -> int:

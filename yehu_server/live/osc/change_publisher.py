@@ -36,7 +36,8 @@ class Subscriber:
     # By topic: the end of its subscription (monotonic s), and the form of the addresses it is
     # sent: plain, or ending in UNIT.
     subscribed: dict[str, tuple[float, str]] = field(default_factory=dict)
-    listens: set[str] = field(default_factory=set)  # addresses of which it is sent all changes
+    # By topic: addresses of which it is sent all changes.
+    listens: dict[str, set[str]] = field(default_factory=dict)
     muted_until: float = 0.0  # until then it is not answered (monotonic s)
     # Addresses to send, in order: in the next round of sending, and in the present one.
     to_send: dict[str, None] = field(default_factory=dict)
@@ -64,23 +65,31 @@ class Subscriber:
         """Whether nothing waits to be sent to it, and it listens to no address."""
         return not (self.to_send or self.sending or self.listens)
 
+    def listen(self, address: str) -> None:
+        """Send it the value at an address, and its changes."""
+        self.to_send[address] = None
+        self.listens.setdefault(topic_of(address), set()).add(address)
+
     def ignore(self, address: str) -> None:
-        """Send it no more changes of an address that it listens to."""
-        self.listens.discard(address)
+        """End what `listen` began."""
+        topic = topic_of(address)
+        if left := self.listens.pop(topic, set()) - {address}:
+            self.listens[topic] = left
         self.to_send.pop(address, None)
         self.sending.pop(address, None)
 
     def topics(self, now: float) -> Iterator[str]:
         """The topics of which it is to be sent something."""
         yield from (topic for topic, (end, _) in self.subscribed.items() if end > now)
-        yield from map(topic_of, (*self.listens, *self.sending))
+        yield from self.listens
+        yield from map(topic_of, self.sending)
 
     def mark(self, topic: str, changed: Sequence[str], found: set[str], now: float) -> None:
         """Mark what it wants of changed addresses to be sent (`found` has all their forms)."""
         end, form = self.subscribed.get(topic, (0.0, ""))
         if end > now:
             self.sending.update(dict.fromkeys(address + form for address in changed))
-        self.sending.update(dict.fromkeys(self.listens & found))
+        self.sending.update(dict.fromkeys(self.listens.get(topic, set()) & found))
 
 
 Values = Callable[[str], Mapping[str, float]]

@@ -17,7 +17,7 @@ from yehu_server.live.osc.status import STATUS_PREFIX
 from yehu_server.live.part_addresses import FIRST
 
 FLUSH_S = 1.0 / 60.0  # between rounds of sending
-SLICE_S = 0.0005  # of a round, after which other messages are handled
+SLICE_S = 0.0002  # of a round, after which other messages are handled
 SWEEP_S = 1.0
 FORGIVEN_S = limits.ERRORS_AT_ONCE / limits.ERRORS_A_SECOND
 
@@ -157,9 +157,7 @@ class Clients:
 
     def listen(self, peer: Peer, address: str) -> None:
         """Send a peer the value at an address (without the prefix) now, and whenever it changes."""
-        client = self._client(peer)
-        client.to_send[address] = None
-        client.listens.add(address)
+        self._client(peer).listen(address)
         self._is_waiting = True
 
     def ignore(self, peer: Peer, address: str) -> None:

@@ -245,6 +245,8 @@ STATUS: tuple[AnyValue, ...] = (
     _gauge("midi_connected", "Number of connected MIDI inputs.",
         lambda s: len(s.midi.connected) if s.midi else 0),
     _counter("midi_messages", "MIDI messages that parts received.", _count_of_midi("messages")),
+    _counter("midi_late", "MIDI messages that came after their frame.",
+        lambda s: sum(part.player.instrument.late_midi for part in s.parts)),
     _counter("midi_malformed", "Damaged MIDI messages that parts received.",
         _count_of_midi("malformed")),
     _text("midi_malformed_last", "The last of them, in hexadecimal, and the input that gave it.",

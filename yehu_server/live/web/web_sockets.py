@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+from collections import deque
 from typing import Any
 
 from aiohttp import WSMsgType, web
@@ -26,7 +27,9 @@ BEHIND_S, MEASURE_S = 0.005, 0.02
 class WebPeer(Peer):
     """A WebSocket, which the OSC thread sends packets to, and the web's thread writes them.
 
-    While the other end does not read, further ones are dropped, and no other client is delayed.
+    It writes what waits at once: each call of the system lets the other thread go on, which is to
+    play. While the other end does not read, further packets are dropped, and no other client is
+    delayed.
     """
 
     def __init__(
@@ -41,6 +44,8 @@ class WebPeer(Peer):
         self._loop = loop
         self._traffic = traffic
         self._sent, self._passed_on, self._buffered = 0, 0, 0  # bytes, each counted by one thread
+        self._waiting: deque[bytes] = deque()
+        self._is_called = False  # whether the web's thread was, for those
         self._measures = False
 
     @property
@@ -58,16 +63,22 @@ class WebPeer(Peer):
             self._traffic.unsent += 1
             return
         self._sent += len(packet)
-        with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._loop.call_soon_threadsafe(self._pass_on, packet)
+        self._waiting.append(packet)
+        if not self._is_called:
+            self._is_called = True
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                self._loop.call_soon_threadsafe(self._pass_on)
 
-    def _pass_on(self, packet: bytes) -> None:
-        self._passed_on += len(packet)
-        self.write(frame_of(packet))
+    def _pass_on(self) -> None:
+        self._is_called = False  # before they are taken, so that none is left
+        packets = [self._waiting.popleft() for _ in range(len(self._waiting))]
+        self._passed_on += sum(map(len, packets))
+        self.write(*map(frame_of, packets))
 
-    def write(self, frame: bytes) -> None:
-        """Write a frame; for the web's thread."""
-        self._traffic.unsent += not write(self._transport, frame, limits.UNSENT)
+    def write(self, *frames: bytes) -> None:
+        """Write frames; for the web's thread."""
+        if not write(self._transport, b"".join(frames), limits.UNSENT):
+            self._traffic.unsent += len(frames)
         if not self._measures:
             self._measure()
 

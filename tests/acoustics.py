@@ -1,7 +1,5 @@
 """Measures of rooms, taken of their impulse responses."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

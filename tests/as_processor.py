@@ -7,8 +7,6 @@ that they have for newer processors. Where this processor can't run the other's 
 says so and exits with 77.
 """
 
-from __future__ import annotations
-
 import os
 import platform
 import sys

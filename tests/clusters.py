@@ -1,7 +1,5 @@
 """A Dask cluster on this machine, for tests: a scheduler and workers, processes of their own."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

@@ -1,7 +1,5 @@
 """What compiled code makes of a bind: its curve both ways, its channels, its soft take-over."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import Any

@@ -9,8 +9,6 @@ A test starts a true Python instead where it is about what only a new interprete
 imports, variables that are read at import, the first compilation, limits while it starts.
 """
 
-from __future__ import annotations
-
 import atexit
 import contextlib
 import ctypes

@@ -1,7 +1,5 @@
 """An instrument whose player acts at once, and what its hands do."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """A player of the shipped instrument that plays, and whose controls are read every 5 ms."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stands for an instrument that leads a part: events come to commands, and nothing sounds."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A phrase, and how loud it is to be: between -23 and -18 LUFS, with peaks of -1 dB at most."""
 
-from __future__ import annotations
-
 import numpy as np
 from measures.bs1770 import lufs, true_peak_db
 

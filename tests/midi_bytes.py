@@ -1,7 +1,5 @@
 """MIDI files byte by byte, for tests."""
 
-from __future__ import annotations
-
 import struct
 
 END = b"\x00\xff\x2f\x00"

@@ -5,8 +5,6 @@
 writes the files and `expected.json`. docs/midi_files.md describes them.
 """
 
-from __future__ import annotations
-
 import gzip
 import io
 import json

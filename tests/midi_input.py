@@ -1,7 +1,5 @@
 """MIDI messages to a live player, as those of an input reach it."""
 
-from __future__ import annotations
-
 import mido
 
 from yehu_server.core.midi.events import MESSAGE

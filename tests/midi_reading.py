@@ -1,7 +1,5 @@
 """Files of bytes as the reader of MIDI files reads them, for tests."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from yehu_server.scores.score import Score

@@ -1,7 +1,5 @@
 """What applied commands move: the parameters of the engine, each at its frame."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """MusicXML in few words: what tests write their scores with."""
 
-from __future__ import annotations
-
 import re
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'

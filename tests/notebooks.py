@@ -5,8 +5,6 @@
 The kernel is reached by sockets of the file system, and no network.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

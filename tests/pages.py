@@ -1,7 +1,5 @@
 """The documentation's pages, and what stands in them: prose, code, blocks."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ The workers of pytest-xdist each load and collect all tests again, and pass thei
 pure Python: together a tenth of the processor time of this suite.
 """
 
-from __future__ import annotations
-
 import itertools
 import multiprocessing
 import os

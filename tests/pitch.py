@@ -5,8 +5,6 @@ JASA 111, 2002): the difference function, normalised by its running mean, falls 
 threshold first at one period. A parabola through the dips at ever more periods refines that.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

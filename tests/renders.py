@@ -5,8 +5,6 @@
 prints the sums of the named ones, or of all, for this level of processors, as JSON.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import io

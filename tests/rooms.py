@@ -1,7 +1,5 @@
 """Rooms, compiled: what they answer to sound, apart from any instrument."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What an instrument plays, and its level."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble

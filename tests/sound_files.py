@@ -1,7 +1,5 @@
 """Noise for tests of sound files and recordings, which need no instrument for it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

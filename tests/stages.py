@@ -1,7 +1,5 @@
 """The stage alone: the mix of given sounds, without the instruments that would make them."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Any
 

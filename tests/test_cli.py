@@ -1,7 +1,5 @@
 """The command line: words, help, bad input, full disks, interrupts."""
 
-from __future__ import annotations
-
 import argparse
 import io
 import itertools

@@ -1,7 +1,5 @@
 """Options of serve, from the command line and from a file."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Constants that compiled code holds are the same on every processor."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -3,8 +3,6 @@
 Links are those of Markdown; how the site shows the pages is in tests/documentation/.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import re

@@ -1,7 +1,5 @@
 """The one reader of TOML and JSON: errors have line, place and a near word."""
 
-from __future__ import annotations
-
 import pytest
 
 from yehu_server.errors import MappingError, ParameterError

@@ -1,7 +1,5 @@
 """Partial files, and locks between processes."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time

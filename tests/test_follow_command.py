@@ -1,7 +1,5 @@
 """``yehu-server follow``: what it writes, and what it refuses."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Helper processes: the modules that they find, and what is done when one has ended."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Threads survive errors of the system, and notice when it slept."""
 
-from __future__ import annotations
-
 import errno
 import os
 import threading

@@ -1,7 +1,5 @@
 """``yehu-server learn`` and ``mappings show --live``, with a running server."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import socket

@@ -1,7 +1,5 @@
 """The limit on open files."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

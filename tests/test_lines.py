@@ -1,7 +1,5 @@
 """Foreign text in terminals, logs and answers: bounded lines without control codes."""
 
-from __future__ import annotations
-
 import argparse
 import io
 import json

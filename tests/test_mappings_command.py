@@ -1,7 +1,5 @@
 """``yehu-server mappings``: list, show, check, convert."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The measures of scripts/playability.py tell right from wrong on sounds that are known."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The notebooks in ``examples/notebooks/`` run, and show pictures and sounds."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -1,7 +1,5 @@
 """No command overwrites what it reads, or what the user made."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

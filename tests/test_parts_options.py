@@ -1,7 +1,5 @@
 """Options of serve for several parts."""
 
-from __future__ import annotations
-
 from yehu_server import cli
 from yehu_server.cli.config import parse
 from yehu_server.cli.part_options import MAX

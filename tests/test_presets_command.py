@@ -1,7 +1,5 @@
 """``yehu-server presets``, and presets on the command line of ``render``."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a release refuses, its metadata, its archives, and how its wheel is tried."""
 
-from __future__ import annotations
-
 import io
 import tarfile
 import wave

@@ -3,8 +3,6 @@
 Here the instrument is alone: one channel, no room. The stage is in test_render_stage.py.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

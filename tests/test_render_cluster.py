@@ -1,7 +1,5 @@
 """``yehu-server render FOLDER --dask``: a folder on a cluster of workers."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """``yehu-server render --ensemble``: each channel or track a yehu, and the stems of the mix."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """``yehu-server render`` of damaged files: what it tells, and its options about them."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """``yehu-server render FOLDER``: a folder of scores to a folder of sounds."""
 
-from __future__ import annotations
-
 import io
 import json
 import multiprocessing

@@ -1,7 +1,5 @@
 """A rendering depends on what its command names, not on what the user learned or saved."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

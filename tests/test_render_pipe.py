@@ -1,7 +1,5 @@
 """``yehu-server render`` in a shell pipeline: a score comes in, its sound goes out."""
 
-from __future__ import annotations
-
 import io
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """``yehu-server render --plot``: a picture of what was rendered."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

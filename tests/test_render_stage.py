@@ -1,7 +1,5 @@
 """``yehu-server render`` on its stage: two channels, a room, and neither."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """One level of processors gives one sequence of samples, whatever the processor and libraries."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """``yehu-server score``: what was understood of a written score; and rendering one."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """The systemd unit that comes along, and `serve` as it runs it: without a terminal."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

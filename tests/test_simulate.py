@@ -1,7 +1,5 @@
 """``yehu-server simulate``: gestures in physical units to arrays, read back."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

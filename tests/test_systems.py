@@ -1,7 +1,5 @@
 """What differs between systems stands in one package, and its forms for other systems fit."""
 
-from __future__ import annotations
-
 import re
 import sys
 import threading

@@ -1,7 +1,5 @@
 """A wheel holds all that Python programs need: built, installed alone, and tried."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

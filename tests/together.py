@@ -1,7 +1,5 @@
 """The onsets of a section, as compiled code plans them (``midi.section_players``)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.core.midi.record import MIDI, prepare_midi

@@ -1,7 +1,5 @@
 """Voices made by rule, of which pitch and level are known at each sample."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -3,8 +3,6 @@
 HTTP by http.client; WebSockets (RFC 6455) by hand.
 """
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import http.client

@@ -1,7 +1,5 @@
 """The module of the types of the model's records, from core/physics/layout.py."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.core.physics import layout, modal_string, planes

@@ -5,8 +5,6 @@ code for ARM is made here too: LLVM makes it of what numba optimised for the low
 Windows is made by the Python of ``scripts/test --windows``, where that is set up.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -6,8 +6,6 @@ What is maintained, and not what begins, is compared: the force changes slowly u
 motion ends. Source of the limits: [Schelleng].
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

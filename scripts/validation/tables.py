@@ -1,7 +1,5 @@
 """The tables of bench/results/validation.md, and of docs/validation.md."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

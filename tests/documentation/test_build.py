@@ -1,7 +1,5 @@
 """The site is written whole, in place of an earlier site only, and not where a link is broken."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

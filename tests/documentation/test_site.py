@@ -1,7 +1,5 @@
 """The documentation site: every page is there, reads as on GitHub, and leads somewhere."""
 
-from __future__ import annotations
-
 import re
 from html.parser import HTMLParser
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The bounds on one input: a second of CPU time, and 200 MB more than before."""
 
-from __future__ import annotations
-
 import contextlib
 import signal
 import threading

@@ -1,7 +1,5 @@
 """An instrument that applies its commands and makes no sound, and a calibration for it."""
 
-from __future__ import annotations
-
 import heapq
 import math
 

@@ -8,8 +8,6 @@ Options are libFuzzer's. It ends at an input that breaks the contract, keeps it 
 reports the error; the exit code is then not 0.
 """
 
-from __future__ import annotations
-
 import logging
 import os
 import sys

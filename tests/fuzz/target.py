@@ -4,8 +4,6 @@ A target gives bytes to a reader and checks the result. It returns if the reader
 them as documented; any other error is a finding.
 """
 
-from __future__ import annotations
-
 import atexit
 import functools
 import os

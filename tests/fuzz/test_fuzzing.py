@@ -1,7 +1,5 @@
 """A moment of fuzzing by hypothesis: seeds with some bytes changed, and any bytes."""
 
-from __future__ import annotations
-
 import importlib
 
 import pytest

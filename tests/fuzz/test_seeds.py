@@ -1,7 +1,5 @@
 """Every reader keeps its contract for every seed, including those that once broke it."""
 
-from __future__ import annotations
-
 import importlib
 
 import pytest

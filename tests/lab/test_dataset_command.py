@@ -1,7 +1,5 @@
 """``yehu-server dataset``: labelled sounds, the same each time."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import io

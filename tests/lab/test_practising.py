@@ -1,7 +1,5 @@
 """Practising tells a good bowing from a bad one, and goes on from what was practised before."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """``yehu-server sweep``: studies and varied gestures, on all cores, and their pictures."""
 
-from __future__ import annotations
-
 import json
 import shutil
 

@@ -1,7 +1,5 @@
 """A server on a still clock, and real servers with clients."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import socket

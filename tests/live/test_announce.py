@@ -1,7 +1,5 @@
 """Announcing the server by zeroconf; these tests do so on loopback only."""
 
-from __future__ import annotations
-
 import socket
 from types import SimpleNamespace
 

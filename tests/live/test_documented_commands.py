@@ -5,8 +5,6 @@ Without ``--all`` examples are cut short, and pages of SLOW are left out. What i
 NOT_GIVEN, with the reason.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -3,8 +3,6 @@
 The clock is that of frames (``bench/mixes.py``).
 """
 
-from __future__ import annotations
-
 import pytest
 from mixes import failures, figures
 

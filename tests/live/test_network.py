@@ -1,7 +1,5 @@
 """Addresses to listen at, and networks that may send."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import ifaddr

@@ -1,7 +1,5 @@
 """Several parts by OSC: whose notes, values and services are whose."""
 
-from __future__ import annotations
-
 import pytest
 from web_client import walk
 from wire import f32

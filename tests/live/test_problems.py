@@ -1,7 +1,5 @@
 """Beside playing the delay is kept, and what goes wrong is reported in few lines."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import pytest

@@ -1,7 +1,5 @@
 """A real server by OSC: delays, bursts, who may speak, start and stop."""
 
-from __future__ import annotations
-
 import contextlib
 import socket
 

@@ -1,7 +1,5 @@
 """``serve --watch``: a mapping that changes while the server plays."""
 
-from __future__ import annotations
-
 import mido
 import pytest
 from midi_input import receive

@@ -1,7 +1,5 @@
 """Presets as text, and morphing between two."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

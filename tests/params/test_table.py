@@ -1,7 +1,5 @@
 """The parameter table, row by row."""
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -1,7 +1,5 @@
 """A player whose hands are watched, on an ideal instrument, and a keyboard to play on."""
 
-from __future__ import annotations
-
 import mido
 import pytest
 from hands import Checked, Watched, ideal

@@ -1,7 +1,5 @@
 """The player's hands in dynamics, vibrato, tremolo, pizzicato, portamento."""
 
-from __future__ import annotations
-
 import pytest
 from hands import Checked
 

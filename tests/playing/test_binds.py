@@ -1,7 +1,5 @@
 """From source to target and back: spans, curves, tables, inversion."""
 
-from __future__ import annotations
-
 import pytest
 from curves import from_unit, input_to_unit, picks_up, receives, to_unit
 from hypothesis import given

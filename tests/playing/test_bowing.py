@@ -1,7 +1,5 @@
 """The bowing that each note needs."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

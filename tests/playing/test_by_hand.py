@@ -1,7 +1,5 @@
 """Playing without notes: a finger slid to a pitch, a bow drawn by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hands import HIGH_DB, LOW_DB, Checked, Watched, ideal

@@ -1,7 +1,5 @@
 """Intonation: the calibration, and those that are shipped."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

@@ -1,7 +1,5 @@
 """The effect of MIDI controllers on the player: bend, pressure, wheels, and their reset."""
 
-from __future__ import annotations
-
 import pytest
 
 PRESS, HARDEST = 1.5, 5.0  # N, by the mapping of conftest.py

@@ -1,7 +1,5 @@
 """The delay of messages, which keeps their rhythm."""
 
-from __future__ import annotations
-
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.playing.delay import HELD_WINDOWS, Delay

@@ -1,7 +1,5 @@
 """Learned binds are kept in a file of the user, whole or not at all, with what they replace."""
 
-from __future__ import annotations
-
 import os
 import tomllib
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Finding the source that the user moves."""
 
-from __future__ import annotations
-
 import mido
 
 from yehu_server.playing.learn import Learner

@@ -1,7 +1,5 @@
 """OSC, MIDI and direct writes to one instrument, in the order of frames."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time

@@ -1,7 +1,5 @@
 """Mapping files: their entries, and the wording of errors."""
 
-from __future__ import annotations
-
 import mido
 import pytest
 from curves import from_unit

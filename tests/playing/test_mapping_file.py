@@ -1,7 +1,5 @@
 """Mapping files: the line of each error, bases, and edited files."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The effect of MIDI channel messages on the player: notes, pedal, channel modes."""
 
-from __future__ import annotations
-
 import mido
 import pytest
 

@@ -1,7 +1,5 @@
 """A string that slips twice in each period sounds an octave up: the hand brings it back."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

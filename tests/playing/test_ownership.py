@@ -1,7 +1,5 @@
 """Ownership of bow and fingers: the player's, or a direct write's."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

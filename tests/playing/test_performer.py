@@ -1,7 +1,5 @@
 """The player's decisions for notes: strings, fingers, strokes, variation, level."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """The sound of phrases: slurs, trills, slides, vibrato, tremolo, plucked notes, ends, no clicks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

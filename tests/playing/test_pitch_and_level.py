@@ -1,7 +1,5 @@
 """The package's estimators of pitch (and the tests' own) and level, on known tones."""
 
-from __future__ import annotations
-
 import math
 from itertools import product
 

@@ -1,7 +1,5 @@
 """What was practised is kept in files, heard and named."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Folders of presets, and loading one while the player plays."""
 
-from __future__ import annotations
-
 import itertools
 import os
 from pathlib import Path

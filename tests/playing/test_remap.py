@@ -1,7 +1,5 @@
 """A mapping replaced while notes sound."""
 
-from __future__ import annotations
-
 import os
 
 import pytest

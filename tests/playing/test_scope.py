@@ -1,7 +1,5 @@
 """The scope of a controller: the notes of its channel, or all notes."""
 
-from __future__ import annotations
-
 import pytest
 
 from yehu_server.playing.bind import Bind

@@ -1,7 +1,5 @@
 """Players of a section have instruments of one maker, seats and random numbers of their own."""
 
-from __future__ import annotations
-
 from itertools import pairwise, product
 
 import numpy as np

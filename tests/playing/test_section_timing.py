@@ -1,7 +1,5 @@
 """Onsets of a section follow the law by which players correct their asynchronies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from together import Together

@@ -1,7 +1,5 @@
 """Soft take-over: a controller moves its target only after reaching its value."""
 
-from __future__ import annotations
-
 import pytest
 
 from yehu_server.playing.bind import Bind

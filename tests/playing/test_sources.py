@@ -1,7 +1,5 @@
 """Every source of a mapping, moved by MIDI messages to both its ends."""
 
-from __future__ import annotations
-
 import pytest
 
 from yehu_server.errors import ParameterError

@@ -1,7 +1,5 @@
 """No note hangs, whatever messages come in whatever order."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterator
 

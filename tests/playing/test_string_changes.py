@@ -1,7 +1,5 @@
 """After a change of strings the new note is heard, and the string that was left is not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

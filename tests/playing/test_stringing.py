@@ -1,7 +1,5 @@
 """Two-stringed fiddles whose strings are tuned otherwise than a yehu's, such as an erhu."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scala tunings: known scales, keyboard maps, and the wording of errors."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

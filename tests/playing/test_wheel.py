@@ -1,7 +1,5 @@
 """With the default mapping the mod wheel draws the bow or plucks; aftertouch rocks the finger."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """MPE: zones, and the effect of member and master channels on the player."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

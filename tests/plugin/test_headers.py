@@ -1,7 +1,5 @@
 """What a plug-in needs is named at once, before anything is compiled."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Jobs on a cluster: a real scheduler, and workers that are processes of their own."""
 
-from __future__ import annotations
-
 import pickle
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Presets and examples are about as loud as each other, so that nobody reaches for the volume."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

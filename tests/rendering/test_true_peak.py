@@ -1,7 +1,5 @@
 """True peaks, of waves whose own are known."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Random edits of scores: a field or an element more, an encoding changed, a voice moved."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from random import Random

@@ -8,8 +8,6 @@ verovio, and `node` finds abcjs (NODE_PATH). Files that a reader refuses are nul
 only tells by its exit code whether the reader is there.
 """
 
-from __future__ import annotations
-
 import base64
 import contextlib
 import importlib

@@ -7,8 +7,6 @@ Needs `jianpu-ly` and `lilypond` on the path; the notes that are kept are by ver
 MIDI note.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -4,8 +4,6 @@ Needs music21 (developed with 10.5), which is too large for every install. Run i
 that has it: PYTHONPATH=tests:tests/scores PYTHON tests/scores/judge_musicxml.py
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import warnings

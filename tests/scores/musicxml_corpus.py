@@ -1,7 +1,5 @@
 """MusicXML that other programs write, in small: what music21 reads of it is in music21.json."""
 
-from __future__ import annotations
-
 from musicxml_text import (
     DIVISIONS,
     attributes,

@@ -1,7 +1,5 @@
 """ABC is read as abc2midi plays it, note by note; and what it cannot play, as the standard says."""
 
-from __future__ import annotations
-
 import random
 import re
 import shutil

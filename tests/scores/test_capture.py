@@ -1,7 +1,5 @@
 """Captures: written as commands are applied, readable whatever ends them."""
 
-from __future__ import annotations
-
 import json
 import os
 import random

@@ -5,8 +5,6 @@ Corpora are no part of the project. YEHU_CORPORA names a folder that has one in 
 verovio; abcjs is found by NODE_PATH.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import random

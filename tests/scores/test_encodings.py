@@ -1,7 +1,5 @@
 """Names in any encoding: each script is found, and Latin accents stay what they are."""
 
-from __future__ import annotations
-
 import mido
 import pytest
 

@@ -1,7 +1,5 @@
 """Ensemble files: what they say, and what is wrong with them, by line."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The scores in examples/ can be played by a yehu, and show what they are for."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from pathlib import Path
 

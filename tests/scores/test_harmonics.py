@@ -1,7 +1,5 @@
 """Marks as they sound: harmonics and gestures at their pitches, and all as before after."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

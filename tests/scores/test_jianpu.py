@@ -1,7 +1,5 @@
 """Jianpu as text: notes, rhythm, repeats, and agreement with jianpu-ly."""
 
-from __future__ import annotations
-
 import json
 import re
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Two-four notation of Chaozhou, and gongche notation."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path

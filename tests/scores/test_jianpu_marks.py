@@ -1,7 +1,5 @@
 """Marks of jianpu: each on its note, at its beat."""
 
-from __future__ import annotations
-
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.jianpu.mark_words import AHEAD, COMMANDS, FINGERING, TEXTS
 from yehu_server.scores.jianpu.reader import parse_jianpu

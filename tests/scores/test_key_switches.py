@@ -1,7 +1,5 @@
 """Keys of a MIDI file that a mapping takes as key switches are no notes, whatever reads them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mido

@@ -1,7 +1,5 @@
 """A written score as a MIDI file: its notes, tempi and bars, and the controllers of `keyboard`."""
 
-from __future__ import annotations
-
 import io
 from fractions import Fraction
 

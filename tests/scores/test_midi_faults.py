@@ -1,7 +1,5 @@
 """Every fault of MIDI files: what becomes of it, and what is said."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

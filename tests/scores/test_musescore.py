@@ -1,7 +1,5 @@
 """Files of MuseScore are read as its program exports them, with a screen or without."""
 
-from __future__ import annotations
-
 import shutil
 import sys
 

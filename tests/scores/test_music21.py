@@ -3,8 +3,6 @@
 `tests/scores/judge_musicxml.py` wrote what music21 reads.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """What MusicXML says, mark by mark; and files that are damaged or made to harm."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Parts are moved into range as a whole; the tune is played, or those that are asked for."""
 
-from __future__ import annotations
-
 import mido
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Marks of a written score become notes, loudness and settings of bow and fingers."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Files with bare notes are shaped; what they mark stays, and so do pitches and onsets."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path

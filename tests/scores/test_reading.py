@@ -1,7 +1,5 @@
 """A file is read by what it holds, else by its name; what a channel or a track has to play."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from pathlib import Path

@@ -3,8 +3,6 @@
 What is counted is the lines of Python that a reader goes through, so load has no part in it.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections import deque

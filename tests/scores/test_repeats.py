@@ -1,7 +1,5 @@
 """The order of bars: forms that are written in odd ways, and any form, unrolled a second way."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from hypothesis import example, given

@@ -1,7 +1,5 @@
 """The tempo of scores gives way within phrases, which begin on time; all parts move together."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Slides over leaps in files leave the note before and are on their pitch on the beat."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The reader of MIDI files, on files built byte by byte."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The reader of MIDI files: what it refuses, files cut short, bounds, and scores in a row."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Tuning by system exclusive: notes move by semitones, and the rest is a bend."""
 
-from __future__ import annotations
-
 import mido
 import pytest
 

@@ -1,7 +1,5 @@
 """What was played becomes a written score: beats, lengths, slurs, dynamics, keys."""
 
-from __future__ import annotations
-
 import random
 from fractions import Fraction
 from pathlib import Path

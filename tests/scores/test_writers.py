@@ -1,7 +1,5 @@
 """Scores written as MusicXML and as jianpu are read again as the same scores."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from fractions import Fraction

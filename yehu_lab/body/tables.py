@@ -3,8 +3,6 @@
 The first column is the time in seconds, for a tap, or the frequency in hertz, for a response.
 """
 
-from __future__ import annotations
-
 import re
 from array import array
 from collections.abc import Iterator, Sequence

@@ -14,8 +14,6 @@ FILE` prints between which bow forces strokes speak.
 Studies are described in docs/sweep.md, gestures in docs/simulate.md
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from pathlib import Path

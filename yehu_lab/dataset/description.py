@@ -1,7 +1,5 @@
 """Reads the description of a data set; docs/dataset.md describes the format."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping

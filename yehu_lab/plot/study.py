@@ -3,8 +3,6 @@
 Schelleng's limits are drawn over them.
 """
 
-from __future__ import annotations
-
 import base64
 import html
 import itertools

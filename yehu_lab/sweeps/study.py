@@ -3,8 +3,6 @@
 docs/sweep.md describes its file.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping, Sequence

@@ -6,8 +6,6 @@ one other thread, and on that one `midi`, `control` and `use_tables`, which post
 `frame`, `value`, `pitch`, `snapshot` and `lost`, which only read.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

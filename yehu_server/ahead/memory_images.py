@@ -3,8 +3,6 @@
 Only words that are not zero are kept, as runs: where one begins, how long it is, and its words.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import chain, pairwise
 from typing import Any

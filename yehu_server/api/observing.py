@@ -1,7 +1,5 @@
 """Compute samples of an instrument, and keep what its model was given and did at each."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

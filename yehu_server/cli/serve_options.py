@@ -1,7 +1,5 @@
 """Arguments of serve, and the options of the server made from them."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import Any

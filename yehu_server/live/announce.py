@@ -1,7 +1,5 @@
 """Announce the server on the network by zeroconf (Bonjour)."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import ipaddress

@@ -4,8 +4,6 @@ The delay follows the device's period, the capture is written, mappings are read
 goes wrong is reported.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import threading

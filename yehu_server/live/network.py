@@ -1,7 +1,5 @@
 """Network addresses: reading and writing them, and which senders are allowed."""
 
-from __future__ import annotations
-
 import contextlib
 import ipaddress
 import re

@@ -1,7 +1,5 @@
 """The live server: constructs its services, starts them in order and stops them."""
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import logging

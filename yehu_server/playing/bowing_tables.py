@@ -3,8 +3,6 @@
 Users know such a file as a practice: `practise` writes it, `--practice` takes it.
 """
 
-from __future__ import annotations
-
 import json
 from functools import lru_cache
 from pathlib import Path

@@ -5,8 +5,6 @@ finger moved until it is in tune. `playing.calibration_store` keeps the results,
 everything that they depend on.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Sequence

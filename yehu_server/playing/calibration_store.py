@@ -4,8 +4,6 @@ The package ships those of the usual sample rates; others are measured once and 
 files with a checksum.
 """
 
-from __future__ import annotations
-
 import json
 import logging
 import math

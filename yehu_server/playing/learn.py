@@ -1,7 +1,5 @@
 """MIDI learn: detect which source the user moves, and keep its bind in a mapping file."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace

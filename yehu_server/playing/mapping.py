@@ -7,8 +7,6 @@ MIDI learn keeps its binds there.
 The format of the files is described in mappings/README.md.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path

@@ -3,8 +3,6 @@
 The format is described in mappings/README.md.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping

@@ -4,8 +4,6 @@ The first of a section has the measured instrument; those of the others differ a
 maker do.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -3,8 +3,6 @@
 What they come to is decided in compiled code (``midi``, ``player``), at their frames.
 """
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Collection, Iterable, Sequence
 from collections.abc import Mapping as Values

@@ -3,8 +3,6 @@
 Each source has one canonical name, by which its binds are found (``mapping.Mapping.of``).
 """
 
-from __future__ import annotations
-
 import re
 
 from yehu_server.errors import ParameterError

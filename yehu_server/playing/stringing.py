@@ -5,8 +5,6 @@ little. The player has one pair of hands for all: where a string is tuned elsewh
 note is stopped and bowed as the note of the yehu that lies as far above the open string.
 """
 
-from __future__ import annotations
-
 from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.note_range import NoteRange

@@ -4,8 +4,6 @@ A scale (``.scl``) lists intervals above its first note, 1/1; a keyboard map (``
 them to keys and gives the frequency of a reference key.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """PNG files of pictures: whether they may be written, and the same bytes for the same picture."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from pathlib import Path

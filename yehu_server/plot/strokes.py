@@ -5,8 +5,6 @@ other way where a note needs more hair than is left, and turns it within a long 
 joins short plain notes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby

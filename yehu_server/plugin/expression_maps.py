@@ -3,8 +3,6 @@
 The formats have no description: the elements are those of maps that Cubase and Dorico write.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path

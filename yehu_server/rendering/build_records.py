@@ -5,8 +5,6 @@ A record holds a key of all that the result depends on, hashes of the files it w
 what may be reported of it again.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json

@@ -4,8 +4,6 @@ A job whose worker dies is given to another one, by Dask's scheduler. docs/clust
 to start a cluster.
 """
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 import logging

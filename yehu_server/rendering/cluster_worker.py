@@ -3,8 +3,6 @@
 Nothing heavy is imported here: the scheduler loads it too.
 """
 
-from __future__ import annotations
-
 import pickle
 import platform
 import threading

@@ -3,8 +3,6 @@
 The tree is kept: ``songs/a.mid`` becomes ``songs/a.wav``.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A performance: instruments on a stage play the events of their parts, block by block."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any

@@ -5,8 +5,6 @@ WAV stream are the largest there are, by which other programs know that it ends 
 samples have no header; all channels of a frame follow each other, little endian.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import struct

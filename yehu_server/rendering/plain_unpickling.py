@@ -3,8 +3,6 @@
 Whoever reaches a scheduler may have it send any bytes to all clients, and Dask unpickles them.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import pickle

@@ -1,7 +1,5 @@
 """Render parts: to sound files and stems, scaled to a true peak; or to a capture."""
 
-from __future__ import annotations
-
 import contextlib
 import tempfile
 import time

@@ -1,7 +1,5 @@
 """The lines of a capture: commands as JSON values, and back; docs/capture.md describes them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import llvmlite

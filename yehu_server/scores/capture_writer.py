@@ -4,8 +4,6 @@ docs/capture.md describes the format: one JSON value a line, so that a capture t
 by a crash can be read.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json

@@ -3,8 +3,6 @@
 docs/ensemble.md describes the format.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

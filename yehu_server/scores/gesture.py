@@ -1,7 +1,5 @@
 """Read gesture files: motion of bow and finger in physical units; see docs/simulate.md."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

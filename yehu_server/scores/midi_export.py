@@ -3,8 +3,6 @@
 Moves of bow and fingers become controllers of the mapping `keyboard`, as far as that has them.
 """
 
-from __future__ import annotations
-
 import io
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence

@@ -6,8 +6,6 @@ second note begins where it is written, on its pitch; live a slide can only foll
 long each lasts, the seed says; without variation no seed changes it.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections import defaultdict

@@ -5,8 +5,6 @@ one begins is written up to that. Notes that overlap are slurred, as they are pl
 becomes dynamics and accents where it is shaped at all.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence

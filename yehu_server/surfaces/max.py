@@ -3,8 +3,6 @@
 Dials send and take real values at their addresses.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Sequence
 from typing import Any

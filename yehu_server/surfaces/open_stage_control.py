@@ -3,8 +3,6 @@
 Faders send and take real values at their addresses.
 """
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -4,8 +4,6 @@ Its network objects are in a subpatch. Each slider receives at its OSC address a
 same with `MOVED` after it; the server's values come back through the socket of the subscription.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import accumulate
 

@@ -3,8 +3,6 @@
 Each module has the forms of all systems side by side. No other module asks which system it is on.
 """
 
-from __future__ import annotations
-
 import sys
 
 NAME = {"win32": "windows", "darwin": "macos"}.get(sys.platform, "linux")

@@ -3,8 +3,6 @@
 They hold what can be computed again, such as compiled code and calibrations.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 from pathlib import Path

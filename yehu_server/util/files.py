@@ -1,7 +1,5 @@
 """Read files of bounded size; write results atomically, and replace only what may be replaced."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import io

@@ -4,8 +4,6 @@ libFLAC encodes, but writes the number of samples into the header only at the en
 rewritten after every block of 4096 samples, so that a crash loses less than a tenth of a second.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 from typing import Any

@@ -1,7 +1,5 @@
 """What hints name: the command as it was called, and how to get a library of an extra."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import shlex

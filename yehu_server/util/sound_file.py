@@ -3,8 +3,6 @@
 And open the ones that others made.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Note-ons that wait are found by key, in a time that doesn't grow with what waits."""
 
-from __future__ import annotations
-
 import random
 from collections import Counter
 

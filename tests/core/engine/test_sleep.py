@@ -1,7 +1,5 @@
 """An instrument at rest is not computed, and nobody hears that it was not."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A stroke has curves of the bow's speed, force and place, as far as phrasing says."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from held_notes import Playing

@@ -1,7 +1,5 @@
 """Tunes of ABC, and how they are played and written in other notations."""
 
-from __future__ import annotations
-
 from fuzz.target import target, written
 from fuzz.targets.scores_musicxml import check
 

@@ -1,7 +1,5 @@
 """Calibrations kept in the cache."""
 
-from __future__ import annotations
-
 import functools
 import math
 import sys

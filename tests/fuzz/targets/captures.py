@@ -1,7 +1,5 @@
 """Captured sessions."""
 
-from __future__ import annotations
-
 import numpy as np
 from fuzz.instrument import Instrument
 from fuzz.target import scratch, target, words, written

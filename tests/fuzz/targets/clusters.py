@@ -1,7 +1,5 @@
 """What a cluster sends to the machine of the command."""
 
-from __future__ import annotations
-
 import pickle
 
 from fuzz.target import target

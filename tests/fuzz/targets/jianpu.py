@@ -1,7 +1,5 @@
 """Texts of jianpu and of two-four notation."""
 
-from __future__ import annotations
-
 import math
 
 from fuzz.target import target

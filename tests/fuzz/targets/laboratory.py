@@ -1,7 +1,5 @@
 """What the laboratory reads: taps on bodies, studies and their results, descriptions of data."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Messages from MIDI ports."""
 
-from __future__ import annotations
-
 import functools
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """MIDI files."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """OSC packets, and the two framings of packets in a stream."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

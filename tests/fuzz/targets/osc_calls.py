@@ -1,7 +1,5 @@
 """OSC messages to the whole handler, on an instrument that only listens."""
 
-from __future__ import annotations
-
 import functools
 import math
 import os

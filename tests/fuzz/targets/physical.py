@@ -1,7 +1,5 @@
 """Files in physical units: gestures, instruments, bodies."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

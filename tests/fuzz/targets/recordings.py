@@ -1,7 +1,5 @@
 """Recordings to follow."""
 
-from __future__ import annotations
-
 import numpy as np
 from fuzz.target import target, written
 

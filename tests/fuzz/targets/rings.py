@@ -1,7 +1,5 @@
 """The rings of events in shared memory, as writers that lost their mind leave them."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """MusicXML, plain and compressed, and how it is played."""
 
-from __future__ import annotations
-
 import io
 import math
 import zipfile

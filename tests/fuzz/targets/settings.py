@@ -1,7 +1,5 @@
 """Files of settings: config, presets, mappings, ensembles."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import io

@@ -1,7 +1,5 @@
 """Scala's files: scales and keyboard maps."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

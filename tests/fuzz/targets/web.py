@@ -1,7 +1,5 @@
 """OSCQuery's HTTP and WebSockets, on a connection in memory."""
 
-from __future__ import annotations
-
 import asyncio
 import functools
 import json

@@ -1,7 +1,5 @@
 """A disk that is full, for tests of this folder."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Callable, Iterator
 

@@ -1,7 +1,5 @@
 """In which order audio devices are listed, and how one is chosen by its name."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import pytest

@@ -1,7 +1,5 @@
 """Sound files: they hold what was written, or do not exist."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import soundfile

@@ -1,7 +1,5 @@
 """A recording that begins with the first sound."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The way out: what it does where the device's process fails, dies or does not answer."""
 
-from __future__ import annotations
-
 import queue
 import time
 from collections.abc import Callable

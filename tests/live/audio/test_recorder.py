@@ -1,7 +1,5 @@
 """Recording from a tape while it runs."""
 
-from __future__ import annotations
-
 import threading
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Recordings and captures are kept whatever clients ask for and whatever fails."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

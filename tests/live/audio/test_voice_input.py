@@ -1,7 +1,5 @@
 """The input of a voice: what it gets of the tuning, and an input that stalls."""
 
-from __future__ import annotations
-
 import math
 import queue
 

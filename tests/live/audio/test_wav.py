@@ -1,7 +1,5 @@
 """WAV files as we write them, against libsndfile and the format's specification."""
 
-from __future__ import annotations
-
 import io
 import struct
 

@@ -1,7 +1,5 @@
 """Sound files while they are written: valid and whole in their frames at every moment."""
 
-from __future__ import annotations
-
 import io
 import math
 

@@ -1,7 +1,5 @@
 """Notes of a controller end that falls silent (active sensing), or is not heard for a while."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import pytest

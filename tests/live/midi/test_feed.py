@@ -1,7 +1,5 @@
 """Messages of MIDI inputs, from the process that holds them to the rings of the parts."""
 
-from __future__ import annotations
-
 import threading
 import time
 

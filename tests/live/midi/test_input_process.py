@@ -1,7 +1,5 @@
 """The process that holds the MIDI inputs."""
 
-from __future__ import annotations
-
 import sys
 
 import pytest

@@ -1,7 +1,5 @@
 """Which MIDI input plays which part."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import pytest

@@ -1,7 +1,5 @@
 """The libraries that read MIDI: which one is used, and that each gives the same."""
 
-from __future__ import annotations
-
 import importlib
 import queue
 import sys

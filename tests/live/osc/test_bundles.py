@@ -1,7 +1,5 @@
 """Time tags by OSC: bundles keep their distances to the sample."""
 
-from __future__ import annotations
-
 import itertools
 import re
 import time

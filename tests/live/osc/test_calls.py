@@ -1,7 +1,5 @@
 """Calls by OSC: notes, bow, bend, panic, reset, release, ping."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from sound import rms

@@ -1,7 +1,5 @@
 """Who is sent what: echoes, changes, errors, and how often."""
 
-from __future__ import annotations
-
 from collections import Counter
 from types import SimpleNamespace
 

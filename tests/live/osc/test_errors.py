@@ -1,7 +1,5 @@
 """What cannot be done is answered with the reason, changes nothing, and costs little."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

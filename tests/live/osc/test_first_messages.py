@@ -1,7 +1,5 @@
 """The OSC messages that pages begin with, in the order in which they stand there."""
 
-from __future__ import annotations
-
 import pytest
 from pages import page
 from sound import rms

@@ -1,7 +1,5 @@
 """Packets in streams: both framings, cut anywhere, and damaged."""
 
-from __future__ import annotations
-
 import itertools
 import struct
 from collections.abc import Iterable

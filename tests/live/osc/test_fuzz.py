@@ -3,8 +3,6 @@
 tests/fuzz makes the packets, and fuzzes them one by one.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import random

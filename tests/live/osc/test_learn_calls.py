@@ -1,7 +1,5 @@
 """MIDI learn and the table of bindings, by OSC."""
 
-from __future__ import annotations
-
 import mido
 import pytest
 from midi_input import receive

@@ -1,7 +1,5 @@
 """OSC addresses that the user's mapping binds to parameters."""
 
-from __future__ import annotations
-
 import pytest
 
 from yehu_server.playing.bind import Bind

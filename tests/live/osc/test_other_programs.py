@@ -1,7 +1,5 @@
 """OSC from and to other programs: liblo, python-osc."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 

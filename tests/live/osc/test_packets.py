@@ -1,7 +1,5 @@
 """Parsing packets: every type, nested bundles, and damaged data."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import struct

@@ -1,7 +1,5 @@
 """Parameters by OSC: set, echoed, asked for, by pattern, and what is refused."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Address patterns: what they match, what they refuse, and that none takes long."""
 
-from __future__ import annotations
-
 import itertools
 import re
 import time

@@ -1,7 +1,5 @@
 """Presets over OSC."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

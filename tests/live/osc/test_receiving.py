@@ -1,7 +1,5 @@
 """Sockets: no packet is lost without need, every loss is counted, and only some may send."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import socket

@@ -1,7 +1,5 @@
 """Time tags: scheduled messages, and the frames of their times."""
 
-from __future__ import annotations
-
 import itertools
 import random
 from types import SimpleNamespace

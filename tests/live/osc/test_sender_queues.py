@@ -1,7 +1,5 @@
 """Each sender of OSC has a queue of the callback to itself, as long as there are enough."""
 
-from __future__ import annotations
-
 from wire import FakePeer
 
 from yehu_server.core.engine.mailbox import SENDER_QUEUES

@@ -1,7 +1,5 @@
 """Subscriptions by OSC: to parameters and the status, by UDP and by streams."""
 
-from __future__ import annotations
-
 import contextlib
 import socket
 import time

@@ -1,7 +1,5 @@
 """The shipped patch on a real server, in a real Pure Data."""
 
-from __future__ import annotations
-
 import contextlib
 import shutil
 import socket

@@ -1,7 +1,5 @@
 """The queue of work: a sender's in order, senders in turn; how much one holds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

@@ -1,7 +1,5 @@
 """Binds as pages have them, to be compared with those of mapping files."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.live.page import facts

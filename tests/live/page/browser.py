@@ -1,7 +1,5 @@
 """Serves the page to a browser, with an imitation of its sound, and plays scenarios in it."""
 
-from __future__ import annotations
-
 import atexit
 import http.server
 import json

@@ -1,7 +1,5 @@
 """The page's folder as a browser gets it, and Node to run its modules."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

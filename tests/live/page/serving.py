@@ -1,7 +1,5 @@
 """A server for pages."""
 
-from __future__ import annotations
-
 import socket
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Streams of calls of a player: whatever hands, MIDI devices and pages may send, by chance."""
 
-from __future__ import annotations
-
 import itertools
 import random
 from functools import partial

@@ -1,7 +1,5 @@
 """Pages that a server serves: they see its instruments, hear them, and play them."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import json

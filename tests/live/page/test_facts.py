@@ -1,7 +1,5 @@
 """The facts that the page gets are those of the server."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

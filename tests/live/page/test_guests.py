@@ -1,7 +1,5 @@
 """Guests of a server in the local network: what each may do, and the PIN that lets them in."""
 
-from __future__ import annotations
-
 import asyncio
 from types import SimpleNamespace
 

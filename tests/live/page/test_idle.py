@@ -1,7 +1,5 @@
 """What the process of pages does while no page is there: nothing."""
 
-from __future__ import annotations
-
 import asyncio
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The page learns what the server learns from the same messages, and keeps it in the same file."""
 
-from __future__ import annotations
-
 import json
 import random
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a page hears of a server, whose clock is not its own."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What the page reads of a snapshot is what the instrument does."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """Whoever wants little motion sees little, and starts the rest; a narrow diagram can be dragged."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

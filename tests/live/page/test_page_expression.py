@@ -1,7 +1,5 @@
 """The page sounds loud and soft as it is touched, sleeps at rest, and plays without a network."""
 
-from __future__ import annotations
-
 import gzip
 from typing import Any
 

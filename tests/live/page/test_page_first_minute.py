@@ -1,7 +1,5 @@
 """A newcomer is shown three gestures, can send what was played as a link, and learns a tune."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

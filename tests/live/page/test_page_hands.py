@@ -1,7 +1,5 @@
 """Hands on the page ask for the notes and strokes that they play, and leave none behind."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

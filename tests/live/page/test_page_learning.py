@@ -1,7 +1,5 @@
 """What a person teaches the page: it moves, is kept, and is a mapping file of the server's."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

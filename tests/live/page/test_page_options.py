@@ -1,7 +1,5 @@
 """Where `serve` offers the page and to whom, what it says of it, and the address as a QR code."""
 
-from __future__ import annotations
-
 from ipaddress import IPv4Interface
 
 import pytest

@@ -1,7 +1,5 @@
 """The pictures show the motion that the string has, and name it as the ear hears it."""
 
-from __future__ import annotations
-
 import json
 import math
 from itertools import pairwise

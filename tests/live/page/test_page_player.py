@@ -1,7 +1,5 @@
 """The page's player posts what the server's does: the same interpreter, in WebAssembly."""
 
-from __future__ import annotations
-
 import json
 import math
 import random

@@ -1,7 +1,5 @@
 """What pages play on the server: applied, known, and ended as they leave."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

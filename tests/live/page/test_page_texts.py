@@ -1,7 +1,5 @@
 """The page's words: the same in each language, for all that the tables have."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What the page shows fits its screen, is reached by keys, and does what it says."""
 
-from __future__ import annotations
-
 import json
 import re
 from typing import Any

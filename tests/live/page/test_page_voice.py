@@ -1,7 +1,5 @@
 """Who hums into a page's microphone plays: the tune, in a performance that can be kept."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Browsers with pages of a server: they play it, hear it, play here, together, and survive it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

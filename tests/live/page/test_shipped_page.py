@@ -2,8 +2,6 @@
 page never mixes an older module with facts of now.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from types import SimpleNamespace

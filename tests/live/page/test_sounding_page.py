@@ -1,7 +1,5 @@
 """The page sounds in a browser, from a plain file server; what it records and keeps is right."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whoever plays a tune along is followed, answered, and sees what went well."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -3,8 +3,6 @@
 It reads orders from its input, and confirms each on its output.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import time

@@ -1,7 +1,5 @@
 """A client of JACK that sings a file of sound into a port: run as a program, ends after it."""
 
-from __future__ import annotations
-
 import os
 import sys
 import threading

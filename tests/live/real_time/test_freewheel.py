@@ -1,7 +1,5 @@
 """The live path through a freewheeling audio server gives the same samples as offline."""
 
-from __future__ import annotations
-
 import mido
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """The sound goes on while Python stands still: ``test_native.py`` reads why in the machine code."""
 
-from __future__ import annotations
-
 import ctypes
 import time
 

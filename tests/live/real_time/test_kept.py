@@ -1,7 +1,5 @@
 """Takes of ``yehu-server serve`` that is killed, interrupted, or out of disk space."""
 
-from __future__ import annotations
-
 import resource
 import signal
 import time

@@ -1,7 +1,5 @@
 """The audio server dies while the instrument plays, and comes back."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

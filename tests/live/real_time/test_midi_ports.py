@@ -1,7 +1,5 @@
 """MIDI from other programs, through JACK's MIDI system."""
 
-from __future__ import annotations
-
 import contextlib
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """A sound server's period may differ from the block size: rhythm is kept, status has both."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

@@ -1,7 +1,5 @@
 """Helpers that end while the system has no room for new ones; a server that is stopped."""
 
-from __future__ import annotations
-
 import os
 import resource
 import signal

@@ -1,7 +1,5 @@
 """``yehu-server serve`` as a command on a real audio server: sound, files, exit."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """A voice at an audio input is followed: over JACK, by another program that sings."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

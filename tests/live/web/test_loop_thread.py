@@ -1,7 +1,5 @@
 """A thread with an asyncio loop survives errors in it."""
 
-from __future__ import annotations
-
 import asyncio
 import errno
 import logging

@@ -1,7 +1,5 @@
 """The OSCQuery tree as data, and the table of status values."""
 
-from __future__ import annotations
-
 import json
 import math
 import subprocess

@@ -1,7 +1,5 @@
 """Which web requests are answered."""
 
-from __future__ import annotations
-
 import socket
 
 from yehu_server.live.web.request_filter import own_names, refusal

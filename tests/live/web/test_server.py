@@ -1,7 +1,5 @@
 """OSCQuery and metrics by HTTP, asked by a client independent of the package."""
 
-from __future__ import annotations
-
 import socket
 
 import pytest

@@ -1,7 +1,5 @@
 """OSCQuery's tree changes as presets are saved and sources are learned."""
 
-from __future__ import annotations
-
 import pytest
 from web_client import WebSocket, ask
 

@@ -1,7 +1,5 @@
 """OSC and OSCQuery's commands by WebSocket, from clients independent of the package."""
 
-from __future__ import annotations
-
 import socket
 import time
 from types import SimpleNamespace

@@ -5,8 +5,6 @@ the same frame within some hundredths of a second, and a new process searches fo
 until it is back.
 """
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import queue

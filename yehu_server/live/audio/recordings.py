@@ -1,7 +1,5 @@
 """Recordings of live sound, in stereo: the one of the command, and those that clients request."""
 
-from __future__ import annotations
-
 import os
 import threading
 import time

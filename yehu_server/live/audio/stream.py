@@ -6,8 +6,6 @@ process, or the silent clock, continues where this one stopped. An output comput
 input follows a voice, and posts events to them.
 """
 
-from __future__ import annotations
-
 import itertools
 import os
 import queue

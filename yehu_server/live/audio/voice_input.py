@@ -1,7 +1,5 @@
 """Play by a voice at an audio input, which is followed as it sings (``core.voice``)."""
 
-from __future__ import annotations
-
 import math
 import threading
 from collections.abc import Callable

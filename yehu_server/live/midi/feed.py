@@ -4,8 +4,6 @@ So they pass no other Python than that of the process that holds the inputs, how
 server is. It loads no compiled code; the rings are those of ``engine.mailbox``.
 """
 
-from __future__ import annotations
-
 import struct
 import threading
 from collections.abc import Mapping, Sequence

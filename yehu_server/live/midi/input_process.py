@@ -5,8 +5,6 @@ where the audio callback takes it (``feed``). When a JACK server dies, this proc
 one takes its place.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import threading

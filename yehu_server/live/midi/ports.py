@@ -1,7 +1,5 @@
 """Play from MIDI inputs as they are connected; report those that come and go."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import threading

@@ -1,7 +1,5 @@
 """Which MIDI input plays which part, by names that stay the same when it is plugged in again."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterable, Mapping, Sequence

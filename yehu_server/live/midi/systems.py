@@ -5,8 +5,6 @@ crashes when the server dies. RtMidi has the others where it has wheels (python-
 Python 3.12); beyond that alsa-midi has ALSA's.
 """
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 import sys

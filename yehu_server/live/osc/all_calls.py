@@ -4,8 +4,6 @@
 the method that carries it out; docs/osc.md describes them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial

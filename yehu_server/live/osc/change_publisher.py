@@ -4,8 +4,6 @@ Values are read once a round, topic by topic, and then sent. What a subscriber a
 round waits for the next one, so that it is sent the values of then.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

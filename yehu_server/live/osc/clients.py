@@ -3,8 +3,6 @@
 All is sent from the listening port, each message by itself: Pure Data does not read bundles.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable, Iterator
 

@@ -1,7 +1,5 @@
 """An OSC client for commands that change or show a running server."""
 
-from __future__ import annotations
-
 import contextlib
 import socket
 import time

@@ -3,8 +3,6 @@
 The protocol is described in docs/osc.md.
 """
 
-from __future__ import annotations
-
 import logging
 import time
 from collections.abc import Iterator

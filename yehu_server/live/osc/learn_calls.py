@@ -1,7 +1,5 @@
 """The OSC calls of MIDI learn, and the one that lists what controllers move."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import replace

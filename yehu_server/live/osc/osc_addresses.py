@@ -5,8 +5,6 @@ address that a piece of the pattern can reach are followed at once, so that no p
 than its length times the address's: a regular expression may take for ever.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from functools import cache, lru_cache

@@ -6,8 +6,6 @@ last packets are handled, so that its sender waits. On Linux the kernel stamps p
 and counts those it drops: a message has its true time however busy Python is.
 """
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import selectors

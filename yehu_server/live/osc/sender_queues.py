@@ -4,8 +4,6 @@ There are SENDER_QUEUES (``core.engine.mailbox``). Each sender has one of them t
 there are enough; the last is of all others together.
 """
 
-from __future__ import annotations
-
 from collections import OrderedDict
 from collections.abc import Sequence
 

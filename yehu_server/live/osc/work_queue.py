@@ -4,8 +4,6 @@ A sender's own work is done in order; senders take turns, each for a slice of ti
 sends little is served within a few slices, however much others have waiting.
 """
 
-from __future__ import annotations
-
 import contextlib
 import socket
 from collections import OrderedDict, deque

@@ -1,7 +1,5 @@
 """The example scores as events, and what a page's performances begin with."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Guests of the page: what those on other machines may do, and the PIN that lets them in."""
 
-from __future__ import annotations
-
 import hmac
 import secrets
 import time

@@ -8,8 +8,6 @@ the socket of sound: then it is one frame number, and float32 samples from there
 in turn. A page plays one part, which its address names: `/socket?part=2`; without, the first.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import struct

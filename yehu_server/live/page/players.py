@@ -4,8 +4,6 @@ A page reads MIDI and mappings itself, and sends what it would post. Its keys li
 its own, so that they are not mistaken for those of another page, or of MIDI.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict, deque
 from collections.abc import Sequence
 from typing import Any

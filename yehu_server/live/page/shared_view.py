@@ -1,7 +1,5 @@
 """The instruments of the server, from the pages' process: it reads them, and posts commands."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any

@@ -1,7 +1,5 @@
 """The page's files: written as a folder, or served, from memory or for a try."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import hashlib

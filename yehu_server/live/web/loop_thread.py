@@ -1,7 +1,5 @@
 """A thread with an asyncio event loop that starts again after errors."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import errno

@@ -3,8 +3,6 @@
 Only OSC messages in a WebSocket change anything. No path of a request is used as a file's name.
 """
 
-from __future__ import annotations
-
 import asyncio
 import ipaddress
 import json

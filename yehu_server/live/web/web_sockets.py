@@ -1,7 +1,5 @@
 """Serve WebSockets: OSC in binary frames, OSCQuery commands in text frames."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import json

@@ -1,7 +1,5 @@
 """Read keys of ABC, and what a key or a voice says of its clef, octave and transposition."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Sequence

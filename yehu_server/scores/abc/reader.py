@@ -3,8 +3,6 @@
 docs/scores.md lists what is understood.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections import Counter

@@ -8,8 +8,6 @@ Pitches of heavy and living notes differ between players and pieces. docs/jianpu
 sources of those here.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from fractions import Fraction

@@ -4,8 +4,6 @@ The format is that of [jianpu-ly], as docs/jianpu.md describes it. 二四谱 and
 with it (`characters`).
 """
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The pitches of figures and characters: key, mode and base octave of a jianpu text."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 

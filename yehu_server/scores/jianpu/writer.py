@@ -3,8 +3,6 @@
 Repeats are written out; a part has a bar a word group, and some bars a line.
 """
 
-from __future__ import annotations
-
 from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Iterator, Sequence

@@ -3,8 +3,6 @@
 docs/scores.md has the table.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Mapping
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Read what MuseScore exports of its own files, where its program is installed."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

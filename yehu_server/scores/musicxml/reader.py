@@ -6,8 +6,6 @@ make a small file endless. Nothing but the file itself is opened: neither its do
 an archive names.
 """
 
-from __future__ import annotations
-
 import codecs
 import io
 import os

@@ -4,8 +4,6 @@ What it holds is what `reader` understands of it: reading the file gives the sam
 are written out.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections import Counter, deque

@@ -1,7 +1,5 @@
 """Decode one track of a MIDI file to messages at ticks, convert these to seconds, note damage."""
 
-from __future__ import annotations
-
 import math
 import re
 from bisect import bisect_right

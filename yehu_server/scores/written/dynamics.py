@@ -1,7 +1,5 @@
 """The loudness of a written part: dynamics, hairpins and accents, as MIDI velocities."""
 
-from __future__ import annotations
-
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from fractions import Fraction

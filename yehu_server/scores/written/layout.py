@@ -3,8 +3,6 @@
 Writers of notation begin from here. Repeats stay unfolded.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence

@@ -3,8 +3,6 @@
 docs/scores.md has the table. Values are by ear, where nothing else is said.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache

@@ -3,8 +3,6 @@
 docs/scores.md has the table. Times are by ear, for the tempo of hands and not of the music.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 docs/scores.md says what each mark does. Each part gets a MIDI channel of its own.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Play even notes unevenly: swing of MusicXML, hornpipes of ABC."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction

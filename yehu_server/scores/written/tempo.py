@@ -3,8 +3,6 @@
 A fermata or caesura slows the beats under it, so that all parts wait together.
 """
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Show what was understood of a written score, as text and as JSON."""
 
-from __future__ import annotations
-
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Iterator

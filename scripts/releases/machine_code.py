@@ -82,11 +82,7 @@ def write_level(into: str) -> None:
 
 
 def _write(
-    path: Path,
-    system: tuple[str, str],
-    what: str,
-    functions: list[list[object]],
-    body: bytes,
+    path: Path, system: tuple[str, str], what: str, functions: list[list[object]], body: bytes
 ) -> None:
     about = [*system, source_hash(what, is_shipped=True)]
     head = {"format": machine_code.FORMAT, "made for": about, "functions": functions}

@@ -163,11 +163,7 @@ def test_no_mathematics_of_a_c_library_is_called():
 
 def test_what_was_made_for_something_else_is_left_alone(kept, tmp_path, caplog):
     system, level, sources = machine_code.made_for(source_hash())
-    for other in (
-        [system, level, "0" * 16],
-        ["riscv", level, sources],
-        [system, "z80", sources],
-    ):
+    for other in ([system, level, "0" * 16], ["riscv", level, sources], [system, "z80", sources]):
         assert written(tmp_path, changed(kept, **{"made for": other})) == {}
     assert written(tmp_path, changed(kept, format=0)) == {}
     assert caplog.messages == []

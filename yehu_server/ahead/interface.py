@@ -11,12 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.ahead.table_checks import (
-    check_binds,
-    check_curves,
-    check_fields,
-    check_values,
-)
+from yehu_server.ahead.table_checks import check_binds, check_curves, check_fields, check_values
 from yehu_server.compile.jit import Native, native
 from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.controls.record import CONTROLS

@@ -101,10 +101,8 @@ class Output:
     """Plays an ensemble on a device, which it searches for from its construction on.
 
     Call `find`, make the ensemble with that rate in ``memory``, then call `begin`, and at last
-    `end`.
-
-    `changed`: called with a line when the device plays, disappears, or is back; from another
-    thread.
+    `end`. `changed` is called, from another thread, with a line when the device plays, disappears,
+    or is back.
     """
 
     def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:

@@ -152,27 +152,9 @@ def test_a_wrong_word_gets_a_near_one_and_the_hint_names_the_command_as_called(
     for words, message in {
         ("rendr", "a.mid"): "did you mean render? (see scripts/yehu --help)",
         ("presets", "lst"): "did you mean list? (see scripts/yehu presets --help)",
-        (
-            "render",
-            "a.mid",
-            "-o",
-            "a.wav",
-            "--scale=x",
-        ): "; did you mean --tuning? ",
-        (
-            "render",
-            "a.mid",
-            "-o",
-            "a.wav",
-            "--reverb=x",
-        ): "; did you mean --room? ",
-        (
-            "render",
-            "a.mid",
-            "-o",
-            "a.wav",
-            "--articulation=x",
-        ): "did you mean --set ",
+        ("render", "a.mid", "-o", "a.wav", "--scale=x"): "; did you mean --tuning? ",
+        ("render", "a.mid", "-o", "a.wav", "--reverb=x"): "; did you mean --room? ",
+        ("render", "a.mid", "-o", "a.wav", "--articulation=x"): "did you mean --set ",
         ("play",): "did you mean serve? ",
         ("render", "a.mid", "-o", "a.wav", "--rom=hall"): "no option --rom; did you mean --room? "
         "(see scripts/yehu render --help)",

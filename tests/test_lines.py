@@ -136,10 +136,7 @@ def test_lines_of_a_journal_begin_with_their_level_and_those_of_other_files_do_n
             assert said[1] == "<3>a defect"
             assert said[-1] == "<3>ValueError: bad"
         else:
-            assert said[:2] == [
-                "yehu-server: MIDI: keys is connected",
-                "yehu-server: a defect",
-            ]
+            assert said[:2] == ["yehu-server: MIDI: keys is connected", "yehu-server: a defect"]
 
 
 def test_lines_of_one_cause_are_bounded_a_minute():

@@ -12,11 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics.default_quantities import (
-    BowQuantities,
-    Quantities,
-    StringQuantities,
-)
+from yehu_server.core.physics.default_quantities import BowQuantities, Quantities, StringQuantities
 from yehu_server.scores.gesture import Gesture
 from yehu_server.simulation.run import Simulation, simulate
 

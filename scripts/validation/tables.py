@@ -88,13 +88,7 @@ def limits(found: Mapping[str, Any]) -> list[str]:
         ]
         for least, great in zip(found["least"], found["greatest"], strict=True)
     ]
-    rows.append(
-        [
-            "power of β",
-            f"{exponents(found, 'least'):.2f} (theory: -2)",
-            *[""] * 5,
-        ]
-    )
+    rows.append(["power of β", f"{exponents(found, 'least'):.2f} (theory: -2)", *[""] * 5])
     return table([*head, "over its limit", "μ reached"], rows)
 
 

@@ -8,13 +8,7 @@ from fiddles import SLACK_TOML
 from midi_files import midi_file, notes
 
 from yehu_lab.practising import bowing_search as practising
-from yehu_lab.practising.bowing_search import (
-    BEFORE_S,
-    EACH_S,
-    EARLY_S,
-    LATE_S,
-    BowingSearch,
-)
+from yehu_lab.practising.bowing_search import BEFORE_S, EACH_S, EARLY_S, LATE_S, BowingSearch
 from yehu_lab.practising.candidates import slower
 from yehu_lab.practising.passages import Passage, SearchedNote
 from yehu_lab.practising.practice_file import write_bowing_table

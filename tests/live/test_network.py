@@ -51,8 +51,7 @@ def test_where_to_listen_is_read_or_refused(subtests):
 
 
 @pytest.mark.parametrize(
-    ("own", "network"),
-    [("192.168.5.5", "192.168.4.0/22"), ("10.1.2.3", "10.1.2.3/32")],
+    ("own", "network"), [("192.168.5.5", "192.168.4.0/22"), ("10.1.2.3", "10.1.2.3/32")]
 )
 def test_the_network_is_as_wide_as_the_interface_says(monkeypatch, own, network):
     found = [("::1", 128), ("127.0.0.1", 8), ("192.168.5.5", 22)]

@@ -263,8 +263,7 @@ def test_a_preset_is_loaded_by_a_part_and_leaves_what_all_share(still, players, 
 
 
 @pytest.mark.parametrize(
-    ("panic", "kept"),
-    [("/panic", []), ("/part/2/panic", [0, 2]), ("/part/1/panic", [1, 2])],
+    ("panic", "kept"), [("/panic", []), ("/part/2/panic", [0, 2]), ("/part/1/panic", [1, 2])]
 )
 def test_a_panic_drops_what_waits_for_its_part(still, players, wire, panic, kept):
     due = still.clock.time() + 0.1

@@ -101,10 +101,7 @@ def test_a_setting_that_makes_no_sense_is_refused(subtests):
         ("/bow/positio=0.1", "/bow/position"),
         ("=0.1", "unknown"),
     ]:
-        with (
-            subtests.test(text=text, wrong=wrong),
-            pytest.raises(ParameterError, match=wrong),
-        ):
+        with subtests.test(text=text, wrong=wrong), pytest.raises(ParameterError, match=wrong):
             assignment(text)
 
 

@@ -22,11 +22,7 @@ from yehu_server.playing.mapping import load
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import player_of
 from yehu_server.playing.player import Player
-from yehu_server.playing.preset_folders import (
-    MAX_NAMED,
-    MAX_OWN,
-    Presets,
-)
+from yehu_server.playing.preset_folders import MAX_NAMED, MAX_OWN, Presets
 
 HEAD = "version = 1\n"
 RATE = 44100.0

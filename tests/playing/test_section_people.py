@@ -14,12 +14,7 @@ from yehu_server.core.physics.radiation import response
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.part_state import Key
-from yehu_server.playing.parts import (
-    MODE,
-    SIZE,
-    section_specs,
-    vary,
-)
+from yehu_server.playing.parts import MODE, SIZE, section_specs, vary
 
 SEEDS = range(20)
 

@@ -1,13 +1,6 @@
 """MusicXML that other programs write, in small: what music21 reads of it is in music21.json."""
 
-from musicxml_text import (
-    DIVISIONS,
-    attributes,
-    barline,
-    grace,
-    note,
-    score,
-)
+from musicxml_text import DIVISIONS, attributes, barline, grace, note, score
 
 TIE, TIED = '<tie type="start"/>', '<tied type="start"/>'
 END, ENDED = '<tie type="stop"/>', '<tied type="stop"/>'

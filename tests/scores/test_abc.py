@@ -313,11 +313,7 @@ def test_hornpipes_and_broken_rhythm_are_played_as_long_as_they_say(read):
         ("R:Hornpipes\nM:2/4\nL:1/16", "CD EF|", [0, third, 0.5, 5 * third / 2]),
         ("R:hornpipe\nM:6/8", "CD EF|", [0, 0.5, 1, 1.5]),
         ("R:reel\nM:4/4", "CD E>F|", [0, 0.5, 1, 1.75]),
-        (
-            "R:hornpipe\nM:C",
-            "D|C>DE3 F|",
-            [0, half, half + 2 * third, 3 * half, 3],
-        ),
+        ("R:hornpipe\nM:C", "D|C>DE3 F|", [0, half, half + 2 * third, 3 * half, 3]),
         ("%%MIDI ratio 5 1", "C>D E<F|", [0, 5 * third / 2, 1, 1 + third / 2]),
         ("R:hornpipe\n%%MIDI ratio 3 1", "CD|", [0, 0.75]),
     ):

@@ -13,15 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_lab.body.curve import KINDS, OTHER_NAMES, RADIATION, Curve, Floats
-from yehu_lab.body.tap import (
-    SKIPPED,
-    Channel,
-    Tap,
-    by_quantity,
-    check_channels,
-    cut,
-    parse_heading,
-)
+from yehu_lab.body.tap import SKIPPED, Channel, Tap, by_quantity, check_channels, cut, parse_heading
 from yehu_server.errors import MeasurementError
 from yehu_server.util.files import MAX_TEXT_BYTES, error_reason, read_lines
 

@@ -36,12 +36,7 @@ from yehu_server.util.files import check_free, check_target, replace_any, replac
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "sweep",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "sweep", __doc__, run)
     add_options(
         parser,
         """

@@ -18,10 +18,7 @@ FARTHEST_APART = 12  # semitones between the strings
 
 
 def notes_of(quantities: Quantities) -> NoteRange:
-    """The notes of a fiddle that is to be tuned.
-
-    Raises ParameterError where its strings are no two that a fiddle has.
-    """
+    """The notes of a fiddle to be tuned; raises ParameterError for strings that no fiddle has."""
     usual = Quantities()
     first, second = (
         12.0 * log2(_hertz(quantities, string) / _hertz(usual, string)) for string in (0, 1)

@@ -46,10 +46,7 @@ class Stroke:
 
 
 def strokes_of(
-    written: Written,
-    number: int,
-    quantities: Quantities | None = None,
-    phrasing: float = PHRASING,
+    written: Written, number: int, quantities: Quantities | None = None, phrasing: float = PHRASING
 ) -> list[Stroke]:
     """Return the strokes of a part, counted from 0, that is in range, as `render` has them."""
     quantities = quantities or Quantities()

@@ -26,10 +26,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class FlacStream:
-    """Writes a FLAC file of 1 to `MAX_CHANNELS` channels; see `wav_stream.WavStream`.
-
-    By the format, more than two channels belong to speakers around the listener.
-    """
+    """Writes FLAC of 1 to `MAX_CHANNELS` (more than two are around the listener); as WavStream."""
 
     def __init__(
         self, file: io.FileIO, rate: int, subtype: str, software: str = "", *, channels: int = 1

@@ -6,15 +6,7 @@ from collections import Counter
 import numpy as np
 import pytest
 import sound
-from core.engine.test_event_queues import (
-    BLOCK,
-    MARK,
-    frames_of,
-    live,
-    play,
-    post,
-    post_of_page,
-)
+from core.engine.test_event_queues import BLOCK, MARK, frames_of, live, play, post, post_of_page
 
 from yehu_server.core.engine.mailbox import HEAP, SENDER_QUEUE, SERVER
 from yehu_server.core.engine.note_index import (
@@ -67,10 +59,7 @@ def test_the_index_finds_what_a_scan_finds() -> None:
     chance = random.Random(3)
     notes, waiting = index(64), []
     for order in range(1, 4000):
-        key = (
-            chance.randrange(3),
-            chance.choice((0.0, -0.0, 1.5, 60.0 + chance.randrange(40))),
-        )
+        key = (chance.randrange(3), chance.choice((0.0, -0.0, 1.5, 60.0 + chance.randrange(40))))
         act = chance.random()
         if act < 0.2:
             end_notes(notes, 7, order, *key)

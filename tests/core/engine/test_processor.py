@@ -62,10 +62,7 @@ def control() -> int:
 
 
 def test_the_clocks_are_pythons_own_and_a_threads_counts_what_it_computes_and_not_what_it_waits():
-    for ours, its in (
-        (monotonic_ns, time.monotonic_ns),
-        (thread_cpu_ns, time.thread_time_ns),
-    ):
+    for ours, its in ((monotonic_ns, time.monotonic_ns), (thread_cpu_ns, time.thread_time_ns)):
         ours()
         for _ in range(100):
             before, now, after = its(), ours(), its()

@@ -95,9 +95,7 @@ def test_a_finger_that_has_come_to_rest_is_as_if_it_were_worked_out_each_time():
     model = kernel.prepare(YEHU, rate, 2)
     t = np.arange(round(0.45 * rate)) / rate
     table = rows(
-        len(t),
-        2,
-        {"press": [np.where((t < 0.03) | (t > 0.4), 1.0, 0.0), 0.0], "x_f": [0.1, 0.012]},
+        len(t), 2, {"press": [np.where((t < 0.03) | (t > 0.4), 1.0, 0.0), 0.0], "x_f": [0.1, 0.012]}
     )
     table[:, layout.F_PLUCK] = np.where((t > 0.3) & (t < 0.33), 25.0, 0.0)
     table[:, layout.X_PLUCK] = 0.1

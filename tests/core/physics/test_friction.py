@@ -10,10 +10,7 @@ from core.physics.runs import play
 
 from yehu_server.core.physics import kernel
 from yehu_server.core.physics.default_quantities import Quantities
-from yehu_server.core.physics.friction import (
-    MAX_ITERATIONS,
-    solve_friction,
-)
+from yehu_server.core.physics.friction import MAX_ITERATIONS, solve_friction
 
 YEHU = Quantities()
 BOW = YEHU.bow

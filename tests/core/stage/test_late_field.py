@@ -2,14 +2,7 @@
 
 import numpy as np
 import pytest
-from acoustics import (
-    OCTAVES,
-    decay_line,
-    decay_time,
-    echo_density,
-    highest_mode_db,
-    octave,
-)
+from acoustics import OCTAVES, decay_line, decay_time, echo_density, highest_mode_db, octave
 from rooms import Asked, Room
 
 STUDY, CHAMBER = Asked(5.0, 0.4, 0.4), Asked(7.0, 0.7, 0.2)

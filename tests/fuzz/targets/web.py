@@ -189,8 +189,7 @@ def http_request(data: bytes) -> None:
 
 
 @target(
-    "http-path",
-    words=words(b"/yehu/|?VALUE|?HOST_INFO|&|%2f|%00|..|/parameters.html|/bow/force"),
+    "http-path", words=words(b"/yehu/|?VALUE|?HOST_INFO|&|%2f|%00|..|/parameters.html|/bow/force")
 )
 def http_path(data: bytes) -> None:
     """Any path and query is answered with JSON, a page, or a client's error."""

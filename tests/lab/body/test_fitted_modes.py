@@ -37,9 +37,7 @@ def test_the_admittance_and_its_modes_come_out_again(fitted):
 
 @settings(max_examples=4)
 @given(
-    seed=st.integers(0, 2**32 - 1),
-    count=st.integers(1, 16),
-    noise=st.sampled_from([0.0, 0.1, 3.0]),
+    seed=st.integers(0, 2**32 - 1), count=st.integers(1, 16), noise=st.sampled_from([0.0, 0.1, 3.0])
 )
 def test_whatever_was_measured_its_body_is_passive_and_its_energy_balances(seed, count, noise):
     random = np.random.default_rng(seed)

@@ -9,10 +9,7 @@ import pytest
 from lab.body.bodies import off_db, rms
 
 from yehu_lab.body.body_file import read_fit
-from yehu_server.core.physics.default_quantities import (
-    read_body,
-    read_quantities,
-)
+from yehu_server.core.physics.default_quantities import read_body, read_quantities
 from yehu_server.errors import MeasurementError, OutputError, ParameterError
 from yehu_server.util.files import MAX_SETTINGS_BYTES
 

@@ -90,8 +90,5 @@ def test_what_cannot_be_varied_is_reported(subtests):
         ({"finger_position": [0.1, 0.39]}, "is not between the loop"),
         ({"bow_force": ["much"]}, "bow_force"),
     ]:
-        with (
-            subtests.test(vary=vary, wrong=wrong),
-            pytest.raises(ParameterError, match=wrong),
-        ):
+        with subtests.test(vary=vary, wrong=wrong), pytest.raises(ParameterError, match=wrong):
             study(**vary)

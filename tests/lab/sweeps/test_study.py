@@ -13,7 +13,7 @@ STUDIES = sorted((shipped_folder("examples") / "studies").glob("*.toml"))
 def test_the_shipped_studies_can_be_run_and_keep_the_order_of_their_axes():
     """Points are numbered by it, in a journal and on a cluster."""
     assert {path.stem for path in STUDIES} == {
-        *("schelleng", "guettler", "force_limits", "press", "place", "tension", "friction"),
+        *("schelleng", "guettler", "force_limits", "press", "place", "tension", "friction")
     }
     for path in STUDIES:
         study = read_study(path)

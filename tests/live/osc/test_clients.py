@@ -7,10 +7,7 @@ import pytest
 from wire import FakePeer
 
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.osc.clients import (
-    SLICE_S,
-    Clients,
-)
+from yehu_server.live.osc.clients import SLICE_S, Clients
 
 
 @pytest.fixture

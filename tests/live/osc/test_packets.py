@@ -10,12 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.osc.packets import (
-    Message,
-    PacketError,
-    steps,
-    unpack,
-)
+from yehu_server.live.osc.packets import Message, PacketError, steps, unpack
 
 words = st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=12)
 arguments = st.one_of(

@@ -9,9 +9,7 @@ from hypothesis import strategies as st
 
 from yehu_server.errors import RefusedError
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.osc.osc_addresses import (
-    matches,
-)
+from yehu_server.live.osc.osc_addresses import matches
 from yehu_server.params.table import TABLE
 
 LETTERS = "ab-/"

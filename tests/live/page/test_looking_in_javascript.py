@@ -81,10 +81,7 @@ def test_the_limits_are_schellengs_at_the_bows_speed_and_place(snapshots, instru
     stop = max(np.flatnonzero(seen["finger_press"]), key=lambda j: seen["finger_x"][j])
     held = seen["finger_x"][stop], seen["finger_press"][stop]
     R = resistance(m, 1, seen["frequency"], *held)
-    limits = {
-        "min": lower_limit(Z, grip, R, speed, beta),
-        "max": upper_limit(Z, grip, speed, beta),
-    }
+    limits = {"min": lower_limit(Z, grip, R, speed, beta), "max": upper_limit(Z, grip, speed, beta)}
     assert snapshots[0]["schelleng"] == pytest.approx(limits)
     assert limits["min"] < snapshots[0]["bow"]["force"] < limits["max"]
 

@@ -6,14 +6,7 @@ import numpy as np
 import pytest
 
 from yehu_server.core.engine.instrument import Instrument
-from yehu_server.core.player.commands import (
-    BEGIN,
-    DRAW,
-    END,
-    EXPRESS,
-    LIFT,
-    WRITE,
-)
+from yehu_server.core.player.commands import BEGIN, DRAW, END, EXPRESS, LIFT, WRITE
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.core.player.record import MAX_HELD
 from yehu_server.live.page.players import PagePlayers

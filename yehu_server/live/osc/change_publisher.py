@@ -88,10 +88,7 @@ STATUS_S = 0.25  # between readings of the status
 
 
 class ChangePublisher:
-    """What subscribers were sent last, and the rounds that send them more.
-
-    `values`, `status`, `prefix`: see ``clients.Clients``.
-    """
+    """What subscribers were sent last, and the rounds that send more; see ``clients.Clients``."""
 
     def __init__(self, values: Values, status: Status, prefix: str) -> None:
         self._values = values

@@ -81,10 +81,7 @@ class CallContext:
         self.clients.send_error(peer, address, reason)
 
     def _is_new_error(self, address: str) -> bool:
-        """Whether to log an error at an address: once for each, and few of all.
-
-        Who sends from one port and listens at another is never answered, and may see it there.
-        """
+        """Whether to log an error at an address: once for each, and few of all."""
         if address in self.wrong_addresses or not self.logged_errors.takes(time.monotonic()):
             return False
         if len(self.wrong_addresses) >= limits.WRONG_ADDRESSES:

@@ -22,10 +22,7 @@ NOT_MOVED = -1.0
 
 
 class LearnCalls(GroupCalls):
-    """Carries out ``/learn``, ``/unlearn`` and ``/bindings``.
-
-    What is learned is learned by the mapping: all parts that use it have it.
-    """
+    """Carries out ``/learn``, ``/unlearn``, ``/bindings``, for all parts that use the mapping."""
 
     @osc_call(
         "/learn",

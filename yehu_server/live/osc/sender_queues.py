@@ -16,10 +16,7 @@ OF_OTHERS = SENDER_QUEUES
 
 
 class SenderQueues:
-    """The queues of senders, from 1; called from one thread.
-
-    `instruments`: the first of each part.
-    """
+    """The queues of senders, from 1, by the first instruments of parts; of one thread."""
 
     def __init__(self, instruments: Sequence[Instrument]) -> None:
         self._instruments = instruments

@@ -48,10 +48,7 @@ Array = Any
 
 
 class PagePlayers:
-    """What pages play, by their numbers; called from one thread.
-
-    `rigs`: the first instrument of each part.
-    """
+    """What pages play, by their numbers, on each part's first instrument; of one thread."""
 
     def __init__(self, view: SharedView, rigs: Sequence[int]) -> None:
         self._view = view

@@ -38,10 +38,7 @@ def read_musescore(path: Path) -> Written:
 
 
 def export(path: Path, target: Path) -> None:
-    """Let MuseScore write a score as a file whose ending says what it is.
-
-    Raises ScoreError, without the file's name, where MuseScore is not there or does not do it.
-    """
+    """Let MuseScore write a score as a file; raises ScoreError, without the file's name."""
     program = next(filter(None, map(shutil.which, PROGRAMS)), None)
     if program is None:
         raise ScoreError(

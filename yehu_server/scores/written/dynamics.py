@@ -114,10 +114,7 @@ class Loudness:
         return round(min(max(loudest, SOFTEST), LOUDEST))
 
     def below_db(self, note: Note, beats: Sequence[float]) -> list[float]:
-        """The levels (dB, 0 or more) of a note below its loudest moment, at some of its beats.
-
-        One value, 0, where loudness stays the same.
-        """
+        """Levels (dB, 0 or more) of a note below its loudest moment at some beats, or one 0."""
         least, largest = self._range(note)
         if largest - least < MIN_SWELL:
             return [0.0]

@@ -1,7 +1,5 @@
 """Hostile senders to the OSC port, by name, for `hostile.py`."""
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 import socket

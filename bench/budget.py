@@ -34,12 +34,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 TUNE = ROOT / "examples" / "slow_air.mid"
-BARE = {
-    "/playing/variation": 0.0,
-    "/playing/listening": 0.0,
-    "/bow/noise": 0.0,
-    "/body/width": 0.0,
-}
+BARE = {"/playing/variation": 0.0, "/playing/listening": 0.0, "/bow/noise": 0.0, "/body/width": 0.0}
 # What each row adds to the one above: settings as shipped, and options of the render.
 ROWS: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
     "the tune: mono, dry, steady hands, no hair, no ear": ((), {"is_dry": True, "is_mono": True}),

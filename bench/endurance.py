@@ -14,8 +14,6 @@ code is 1 where one is missed.
 With --parts several players are on the stage, each with an input of its own and some of the OSC.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import json

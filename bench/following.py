@@ -8,8 +8,6 @@ clicks. Pitch is counted as mir_eval counts raw pitch and chroma accuracy, but a
 pitch is heard is wrong.
 """
 
-from __future__ import annotations
-
 import argparse
 import subprocess
 import tempfile

@@ -9,8 +9,6 @@ That one's messages are counted where they are sent, where they are taken by the
 they came after their frame. Memory is that of the server process alone, sampled; this needs Linux.
 """
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 import socket

@@ -1,7 +1,5 @@
 """The kernel alone, in a steady state: what `run.py` times beside the yardstick."""
 
-from __future__ import annotations
-
 import time
 from typing import Any
 

@@ -10,8 +10,6 @@ column, comes on top. The instrument's own share is the time from the message's 
 to the frame at which the player applies it.
 """
 
-from __future__ import annotations
-
 import os
 import random
 import re

@@ -15,8 +15,6 @@ device that keeps time: a block and the handling part. With --parts several play
 and with --listeners eight OSCQuery clients are sent every change of any value.
 """
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 import time

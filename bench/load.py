@@ -3,8 +3,6 @@
 .venv/bin/python bench/load.py PORT     sends the load to an OSC port, until it is killed
 """
 
-from __future__ import annotations
-
 import collections
 import contextlib
 import ctypes.util

@@ -10,8 +10,6 @@ waited, else "lost".
 Sockets and the system's scheduling are left out.
 """
 
-from __future__ import annotations
-
 import random
 import time
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Command line, timing, table and result file of all benchmarks."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

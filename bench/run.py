@@ -10,8 +10,6 @@ figure is the median of several, with the extremes.
 `scripts/generate` puts saved figures into bench/results/performance.md.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import statistics

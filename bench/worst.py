@@ -13,8 +13,6 @@ each note is late by less than a block, none is lost but to a panic, and no call
 half its deadline.
 """
 
-from __future__ import annotations
-
 import argparse
 import itertools
 import random

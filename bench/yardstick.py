@@ -5,8 +5,6 @@ precision, by the equations of [Yehu] as corrected in docs/physics.md, without t
 It gets the same SI values as the kernel, and derives the rest itself.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -8,8 +8,6 @@ bench/results/articulations.json. The analysis knows when notes begin, how long 
 pitches, and no gesture.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from pathlib import Path

@@ -5,8 +5,6 @@
 Where no sample changes, `scripts/generate` keeps the figures, under keys of the new code.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import time

@@ -5,8 +5,6 @@
 scripts/test runs it before tests, scripts/release as it makes the machine code of a wheel.
 """
 
-from __future__ import annotations
-
 import sys
 
 from yehu_lab.regimes import strokes

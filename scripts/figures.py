@@ -18,8 +18,6 @@ Without names it draws all, in some minutes. Pictures go to FOLDER/figures and
 sounds to FOLDER/sounds (default: docs).
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

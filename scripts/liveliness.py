@@ -9,8 +9,6 @@ written music with marks, and takes played live, of which no length is known. `m
 says what each figure is. The range is that of recordings of violins, cellos and an erhu.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Callable, Sequence

@@ -9,8 +9,6 @@ The last line is the share of all cases that are right. Under variation the mean
 partials from 0.4 s on counts in grid, steady, quarters, strings and presets.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Callable

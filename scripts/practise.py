@@ -8,8 +8,6 @@ two cores, more anew; the other rates stay as they are. Then run scripts/calibra
 calibrations belong to it.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import time

@@ -6,8 +6,6 @@ For each level of processors that this one can run, or the named ones. Run it wh
 change samples; its commit says why they do.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

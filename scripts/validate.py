@@ -7,8 +7,6 @@
 `measure` takes subjects as arguments, to measure only those; the others stay as they were.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable

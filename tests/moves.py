@@ -4,13 +4,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from yehu_server.core.controls.slots import FINGER_POSITION, PLUCK, SHARE, SPEED
+from yehu_server.core.controls.slots import FINGER_POSITION, SLOTS
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.player.commands import apply
-from yehu_server.core.player.parameter_indices import LISTENING
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.params.table import SLOT
 
-BY_EAR = [*FINGER_POSITION, SHARE]
+BY_EAR = [*FINGER_POSITION, SLOTS.bow_pressure]
 ADDRESSES = {slot: address for address, slot in SLOT.items()}
 
 
@@ -71,8 +71,12 @@ class Moves:
         """
         targets = self._instrument._rig["controls"]["target"][0]
         is_alike = targets == self.targets
-        is_alike[PLUCK] |= targets[PLUCK] == 0.0  # the string slips off the fingertip by itself
-        is_alike[SPEED] |= abs(targets[SPEED]) == abs(self.targets[SPEED])
-        if self._instrument._rig["player"]["value"][0, LISTENING] > 0.0:
+        is_alike[SLOTS.pluck_force] |= (
+            targets[SLOTS.pluck_force] == 0.0
+        )  # the string slips off the fingertip by itself
+        is_alike[SLOTS.bow_speed] |= abs(targets[SLOTS.bow_speed]) == abs(
+            self.targets[SLOTS.bow_speed]
+        )
+        if self._instrument._rig["player"]["value"][0, PLAYING.listening] > 0.0:
             is_alike[BY_EAR] = True
         return bool(is_alike.all())

@@ -4,7 +4,7 @@ import numpy as np
 
 from yehu_server.core.midi.record import MIDI, prepare_midi
 from yehu_server.core.midi.section_players import begin_sequence, plan_onset, plan_release
-from yehu_server.core.player.parameter_indices import VARIATION
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.params.table import TABLE
 
 
@@ -21,11 +21,11 @@ class Together:
     @property
     def variation(self) -> float:
         """As /playing/variation."""
-        return float(self._record["value"][VARIATION])
+        return float(self._record["value"][PLAYING.variation])
 
     @variation.setter
     def variation(self, variation: float) -> None:
-        self._record["value"][VARIATION] = variation
+        self._record["value"][PLAYING.variation] = variation
 
     @property
     def playing(self) -> int:

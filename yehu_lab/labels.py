@@ -1,7 +1,5 @@
 """Units and names of what sweeps vary and find, beside those of signals."""
 
-from __future__ import annotations
-
 from yehu_server.simulation import labels
 from yehu_server.simulation.labels import Label
 

@@ -12,8 +12,6 @@ Examples
 (2, 44100)
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 

@@ -4,8 +4,6 @@ Everything the package raises on purpose derives from :class:`YehuError`, so tha
 the command line can print the message and leave with exit code 2.
 """
 
-from __future__ import annotations
-
 import unicodedata
 from collections.abc import Collection, Mapping
 

@@ -3,8 +3,6 @@
 The one place of this package that knows the laboratory; its commands come by an entry point.
 """
 
-from __future__ import annotations
-
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
 

@@ -1,7 +1,5 @@
 """Build the documentation site, whole or not at all; ``scripts/site`` runs it."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import subprocess

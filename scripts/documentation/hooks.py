@@ -5,8 +5,6 @@ Pages of ``docs/`` keep their places. Those that stand elsewhere, such as the RE
 links to, texts of code become pages, and the rest is copied.
 """
 
-from __future__ import annotations
-
 import html
 import logging
 import os

@@ -1,7 +1,5 @@
 """Shows notebooks as pages: their text and code, and what running them shows and sounds."""
 
-from __future__ import annotations
-
 import base64
 import json
 import os

@@ -1,7 +1,5 @@
 """Write all that is written from other files; `scripts/generate` runs it."""
 
-from __future__ import annotations
-
 from generators.page_tables import ROOT
 from generators.written import for_the_page, written
 from yehu_server.playing.calibration_store import SHIPPED as CALIBRATIONS

@@ -1,7 +1,5 @@
 """The module of the types of the model's records, from core/physics/layout.py."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.core.physics import layout, modal_string, planes
@@ -24,8 +22,6 @@ In compiled code a record of an array of layout.MODEL, layout.STATE, layout.REFI
 planes.PLANES or modal_string.MODAL has these attributes.
 docs/notation.md has their symbols and units.
 """
-
-from __future__ import annotations
 
 from typing import Protocol
 

@@ -1,7 +1,5 @@
 """Tables of pages, by their names. What was measured is read from bench/results/."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

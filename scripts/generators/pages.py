@@ -5,8 +5,6 @@ behind `<!--=CONSTANT-->` or `<!--=CONSTANT:UNIT-->`: a constant by its path in 
 `playing.delay.HANDLING_MS`, in a unit of UNITS where that is another than its own.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from importlib import import_module

@@ -1,7 +1,5 @@
 """Each file that is written from other files, with the bytes it should have."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path

@@ -6,8 +6,6 @@ numpy imports them from Windows' C library. A DLL of another name has them inste
 rest, and that name replaces the library's in each module. Good enough for what the tests compute.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The commands of `scripts/listen`."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

@@ -6,8 +6,6 @@ modulation spectra of [HoutgastSteeneken]. The level is left out. Recordings the
 the others, say what is near. What is compared is dry, or stands in a room, alike.
 """
 
-from __future__ import annotations
-
 import argparse
 
 import numpy as np

@@ -3,8 +3,6 @@
 Files with the same name in two groups are one piece: these are compared before others.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import math

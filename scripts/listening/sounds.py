@@ -1,7 +1,5 @@
 """Folders of sounds that are compared: read, cut and brought to one loudness."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """How articulations come out, at three tempi and three dynamics, and whether as is stated."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, dataclass, field
 from typing import Any

@@ -4,8 +4,6 @@ Moments within half a semitone of an open string count apart: no finger fits the
 string the note goes on on the F string.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import repeat
 

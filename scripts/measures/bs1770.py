@@ -1,7 +1,5 @@
 """Integrated loudness of a sound, from [BS1770], and its true peak."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ after a longer attack; a number is the final error in cents; `O` a higher regist
 one, `?` no pitch. Under variation the mean of the partials from 0.4 s on counts.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from dataclasses import replace

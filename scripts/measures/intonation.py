@@ -6,8 +6,6 @@ autocorrelation is an octave too low. `overtones_off_by` finds the pitch of a sh
 what still rings of those before, by its harmonics, which differ in frequency.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 

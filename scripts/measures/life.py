@@ -1,7 +1,5 @@
 """`life`: how much held notes vary, as a person's do: neither a machine's nor rough."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

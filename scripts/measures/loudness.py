@@ -1,7 +1,5 @@
 """`evenness`, `velocity`: how loud notes are, from one to the next and from soft to loud."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ where its pitch swings by less than PLAIN_CENTS at 4 to 9 Hz; the drift is what 
 leaves.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import Any
 

@@ -11,8 +11,6 @@ wrong at that time is the old note, which rings on; an octave below, of two stri
 of one whose periods differ in turn; an octave above; or nothing that has a pitch.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 from itertools import chain, pairwise

@@ -5,8 +5,6 @@ stands beside it: recordings of an erhu, a solo violin and a cello. A measure wi
 wrong, but for the dynamics over a tune.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

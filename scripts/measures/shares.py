@@ -1,7 +1,5 @@
 """How many of the cases of a measure are right: counted, printed, and as JSON values."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@ second half, and its harmonics over all else within 15 dB of the pitch's median.
 follow each note that does not always speak: too loud or soft, out of tune, rough.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import chain
 from typing import Any

@@ -1,7 +1,5 @@
 """`legato`, `clicks`: what happens where notes meet."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from measures.intonation import bound, overtones_off_by

@@ -9,8 +9,6 @@ sawtooth waves of 65 to 89 at 44.1, 48 and 96 kHz, with noise 40 dB below, its e
 most; beside a fifth above, 6 dB below the note, 1.5 cents.
 """
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path

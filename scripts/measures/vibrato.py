@@ -4,8 +4,6 @@ The player's own, as files have it, and one that is asked for; from 1.2 s on, as
 The level counts without a cubic through all of it, since notes swell.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from measures.heard import HOP_S, heard

@@ -1,7 +1,5 @@
 """Every articulation on one note: sounds of strokes, slides and beats, and what is heard."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

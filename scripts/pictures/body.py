@@ -3,8 +3,6 @@
 The taps are made of bodies whose modes are known; see `lab.body.synthetic`.
 """
 
-from __future__ import annotations
-
 import tempfile
 from dataclasses import replace
 from pathlib import Path

@@ -3,8 +3,6 @@
 brilliance.png has their centroids over velocity, and brilliance.flac a few notes at three dynamics.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -4,8 +4,6 @@ ensemble.png has the spectrogram of the mix, and the pitch of each part by its s
 of the score; ensemble.flac is the sound.
 """
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 from typing import Any

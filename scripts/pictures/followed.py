@@ -1,7 +1,5 @@
 """A hummed tune, and what is played of it: pictures and sounds. The hum is made by rule."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

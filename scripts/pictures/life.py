@@ -4,8 +4,6 @@ life.png has level, spectrogram and pitch of each, and three files their sounds,
 alive. The phrase is that of shi_bei_jiu.mid without its marks: notes alone, all of one velocity.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ Where the paper compares with measurements, these figures compare with the model
 the measured curves are not published.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -3,8 +3,6 @@
 Coarser than the maps whose shares docs/playability.md gives, on the same strokes.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How the rooms of the presets answer: reflections, decay, and the spectrum of the tail."""
 
-from __future__ import annotations
-
 import sys
 from importlib import import_module
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Writes pictures and sounds of the documentation, and prints their size."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

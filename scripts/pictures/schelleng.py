@@ -4,8 +4,6 @@ A stopped note on each string is bowed with forces over bow positions at three s
 speeds. The rule of docs/sweep.md names the regimes; the lines are Schelleng's limits of the force.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Make the parts of a release into a folder, one after another, and try the wheel."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -1,7 +1,5 @@
 """What a release says of itself: its version, in all files alike, and the metadata of a deposit."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from pathlib import Path

@@ -5,8 +5,6 @@ code for ARM is made here too: LLVM makes it of what numba optimised for the low
 Windows is made by the Python of ``scripts/test --windows``, where that is set up.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -84,11 +82,7 @@ def write_level(into: str) -> None:
 
 
 def _write(
-    path: Path,
-    system: tuple[str, str],
-    what: str,
-    functions: list[list[object]],
-    body: bytes,
+    path: Path, system: tuple[str, str], what: str, functions: list[list[object]], body: bytes
 ) -> None:
     about = [*system, source_hash(what, is_shipped=True)]
     head = {"format": machine_code.FORMAT, "made for": about, "functions": functions}

@@ -1,7 +1,5 @@
 """What a release is made of, each part written into a folder of its own or a file."""
 
-from __future__ import annotations
-
 import email
 import hashlib
 import importlib.metadata

@@ -7,8 +7,6 @@ It needs nothing but the standard library, and runs on Linux, macOS and Windows.
 folder, and the page, written (heard in Chromium where playwright-core is installed in web/).
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import http.server

@@ -1,7 +1,5 @@
 """What changes with the sample rate, with the grid at one rate, and with the hair's seed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """The figures of bench/results/validation.md."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

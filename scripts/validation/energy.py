@@ -1,7 +1,5 @@
 """How much power is missing from the energy ledger, over random playing of ten seconds."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Strokes by chance that no other study has, at two rates: whether shares are within the bar."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -6,19 +6,13 @@ What is maintained, and not what begins, is compared: the force changes slowly u
 motion ends. Source of the limits: [Schelleng].
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from yehu_server.core.physics.default_quantities import (
-    BowQuantities,
-    Quantities,
-    StringQuantities,
-)
+from yehu_server.core.physics.default_quantities import BowQuantities, Quantities, StringQuantities
 from yehu_server.scores.gesture import Gesture
 from yehu_server.simulation.run import Simulation, simulate
 

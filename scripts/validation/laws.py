@@ -1,7 +1,5 @@
 """The same strokes with other laws of friction, and what their maps are like."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

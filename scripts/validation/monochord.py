@@ -8,8 +8,6 @@ as a line, and the share of strokes that do. The string is their string A ([Lamp
 and friction are those of [YehuData], which are [Matusiak]'s but for bristles a tenth as stiff.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import asdict, dataclass

@@ -8,8 +8,6 @@ to a note is taken from the seven others alone, by frequency; so it can only exp
 harmonic's frequency explains.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The explicit scheme and modal strings at some rates, against modal strings at 176.4 kHz."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

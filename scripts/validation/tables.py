@@ -1,7 +1,5 @@
 """The tables of bench/results/validation.md, and of docs/validation.md."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -90,13 +88,7 @@ def limits(found: Mapping[str, Any]) -> list[str]:
         ]
         for least, great in zip(found["least"], found["greatest"], strict=True)
     ]
-    rows.append(
-        [
-            "power of β",
-            f"{exponents(found, 'least'):.2f} (theory: -2)",
-            *[""] * 5,
-        ]
-    )
+    rows.append(["power of β", f"{exponents(found, 'least'):.2f} (theory: -2)", *[""] * 5])
     return table([*head, "over its limit", "μ reached"], rows)
 
 

@@ -1,7 +1,5 @@
 """Strings in two directions against one: beats, decay, the finger's share, least forces."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

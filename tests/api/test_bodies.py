@@ -44,7 +44,9 @@ def test_a_body_of_files_is_fitted_drawn_kept_and_played(tmp_path, monkeypatch):
     assert len(written) == 2
     monkeypatch.setattr(calibration_store, "data_folder", lambda: tmp_path)
     usual = calibration_store.calibration_for(44100.0)
-    monkeypatch.setattr(calibration_store, "calibrate", lambda *_, **__: usual)  # it is not heard
+    monkeypatch.setattr(
+        calibration_store.calibration, "calibrate", lambda *_, **__: usual
+    )  # it is not heard
     fiddle = yehu.Instrument(instrument=found)
     assert fiddle.quantities.body == yehu.body.load(fiddle.quantities).body == found.body
 

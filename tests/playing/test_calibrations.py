@@ -50,7 +50,7 @@ class Kept:
 @pytest.fixture
 def kept(monkeypatch, tmp_path) -> Kept:
     kept = Kept(tmp_path)
-    monkeypatch.setattr(calibration_store, "calibrate", kept.measure)
+    monkeypatch.setattr(calibration_store.calibration, "calibrate", kept.measure)
     monkeypatch.setattr(calibration_store, "data_folder", lambda: tmp_path)
     monkeypatch.setattr(calibration_store, "_unkept", {})
     return kept

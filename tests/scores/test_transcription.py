@@ -10,7 +10,7 @@ import pytest
 
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, COMMAND, END, EXPRESS, STOP, WRITE
-from yehu_server.core.player.parameter_indices import INDEX, VELOCITY
+from yehu_server.core.player.parameter_indices import INDEX, PLAYING
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_header import SessionStart
 from yehu_server.scores.capture_writer import CaptureWriter
@@ -146,7 +146,7 @@ def test_a_capture_is_written_as_its_players_played(tmp_path):
     writer = CaptureWriter(path, beginning=SessionStart((InstrumentSpec(RATE),)))
     second = int(RATE)
     commands = [
-        (0, EXPRESS, VELOCITY, 80 / 127, 0.0),
+        (0, EXPRESS, PLAYING.velocity, 80 / 127, 0.0),
         (0, BEGIN, 0, 67.0, 67.0),
         (second, BEGIN, 0, 60.0, 72.0),  # C4, moved into range; it begins while G4 is held
         (second + 500, END, 0, 67.0, 0.0),

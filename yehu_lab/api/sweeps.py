@@ -1,7 +1,5 @@
 """Many gestures at once: how the model answers, with every combination of some values."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any

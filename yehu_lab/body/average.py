@@ -1,7 +1,5 @@
 """Average taps of a hammer to an admittance and a radiation, with their coherence (H1)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -4,8 +4,6 @@ A body file is JSON: what `physics.default_quantities.read_body` reads, and besi
 measured and how the fit went, which `yehu-server body show` draws.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """From a measurement to a body that the model plays."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

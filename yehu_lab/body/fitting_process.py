@@ -4,8 +4,6 @@ More would wait for each other, since matrices are small, and keep all cores bus
 many there are is read once, when NumPy loads, which is long over where a program calls.
 """
 
-from __future__ import annotations
-
 import os
 import pickle
 import subprocess

@@ -1,7 +1,5 @@
 """A measured body: read from files of any of the known kinds, averaged and checked."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace

@@ -9,8 +9,6 @@ only frequencies and dampings are searched (variable projection). All that a ste
 needs are inner products of a few columns, which are taken once a step.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

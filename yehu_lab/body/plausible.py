@@ -5,8 +5,6 @@ dashpots can make what was measured, with amounts that are not below zero. What 
 is of another kind, the wrong way round, or was measured at two points.
 """
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A body in words: its modes, how well it fits, and what may be wrong with it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -5,8 +5,6 @@ frequencies and dampings; all are refined each time. A criterion of information 
 further mode fits nothing but noise.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

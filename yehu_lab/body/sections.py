@@ -9,8 +9,6 @@ Source: B. Gustavsen and A. Semlyen, IEEE Trans. Power Delivery 14 (1999) 1052; 
 B. Gustavsen, ibid. 21 (2006) 1587.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -4,8 +4,6 @@ The modes' velocity under a half-sine pulse is written in closed form, at eight 
 rate, and both channels go through the same low-pass filter, as in a recording interface.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

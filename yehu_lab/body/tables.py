@@ -3,8 +3,6 @@
 The first column is the time in seconds, for a tap, or the frequency in hertz, for a response.
 """
 
-from __future__ import annotations
-
 import re
 from array import array
 from collections.abc import Iterator, Sequence
@@ -15,15 +13,7 @@ from typing import Any
 import numpy as np
 
 from yehu_lab.body.curve import KINDS, OTHER_NAMES, RADIATION, Curve, Floats
-from yehu_lab.body.tap import (
-    SKIPPED,
-    Channel,
-    Tap,
-    by_quantity,
-    check_channels,
-    cut,
-    parse_heading,
-)
+from yehu_lab.body.tap import SKIPPED, Channel, Tap, by_quantity, check_channels, cut, parse_heading
 from yehu_server.errors import MeasurementError
 from yehu_server.util.files import MAX_TEXT_BYTES, error_reason, read_lines
 

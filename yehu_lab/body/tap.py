@@ -3,8 +3,6 @@
 And what the channels of a recording are: names, and how large full scale or a unit is.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Responses and taps from Universal File Format, data set 58, as measuring systems write it."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import warnings

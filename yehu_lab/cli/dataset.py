@@ -43,12 +43,7 @@ if TYPE_CHECKING:
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "dataset",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "dataset", __doc__, run)
     add_options(parser, "description DESCRIPTION.toml: what to draw, and how", description=Path)
     add_folder(parser)
     add_options(

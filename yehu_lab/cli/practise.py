@@ -13,8 +13,6 @@ It takes a quarter of an hour or more on two cores. It begins with the table bes
 file, or with the shipped one. The yehu itself is practised already.
 """
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

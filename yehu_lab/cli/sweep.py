@@ -14,8 +14,6 @@ FILE` prints between which bow forces strokes speak.
 Studies are described in docs/sweep.md, gestures in docs/simulate.md
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from pathlib import Path
@@ -38,12 +36,7 @@ from yehu_server.util.files import check_free, check_target, replace_any, replac
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(
-        commands,
-        "sweep",
-        __doc__,
-        run,
-    )
+    parser = add_command(commands, "sweep", __doc__, run)
     add_options(
         parser,
         """

@@ -1,7 +1,5 @@
 """What a data set says of itself: a card for readers (README.md), and its facts (dataset.json)."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections import Counter

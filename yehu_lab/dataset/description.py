@@ -1,7 +1,5 @@
 """Reads the description of a data set; docs/dataset.md describes the format."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping
@@ -9,13 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from yehu_lab.dataset.draws import (
-    Distribution,
-    chance,
-    constant,
-    read_distribution,
-    shares_of,
-)
+from yehu_lab.dataset.draws import Distribution, chance, constant, read_distribution, shares_of
 from yehu_lab.sweeps.note_strokes import played_rate
 from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.player.note_range import YEHU

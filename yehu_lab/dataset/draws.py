@@ -5,8 +5,6 @@ same in any order, on any machine and with any library; another entry in the des
 sounds, change no other draw.
 """
 
-from __future__ import annotations
-
 import bisect
 import hashlib
 import itertools

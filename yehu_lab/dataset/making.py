@@ -1,7 +1,5 @@
 """Makes the sounds of a data set with their files, some at a time, in any process or machine."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass

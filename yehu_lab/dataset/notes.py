@@ -1,7 +1,5 @@
 """The sounds of a data set: a stroke that is drawn as numbers, or notes that the player plays."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

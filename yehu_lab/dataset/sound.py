@@ -1,7 +1,5 @@
 """One sound of a data set with all that is known of it, and how it is judged."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field

@@ -1,7 +1,5 @@
 """What maps of sweeps are made of: cells, colours of regimes, Schelleng's limits."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 

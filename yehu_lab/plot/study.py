@@ -3,8 +3,6 @@
 Schelleng's limits are drawn over them.
 """
 
-from __future__ import annotations
-
 import base64
 import html
 import itertools
@@ -17,16 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_lab.plot.cells import (
-    COLOURS,
-    LABELS,
-    RATE_ERROR,
-    draw_limits,
-    limit_lines,
-    regime_patches,
-    set_scale,
-    share_of,
-)
+from yehu_lab.plot import cells
 from yehu_lab.plot.sweep_maps import (
     ALONG,
     FORCE,
@@ -93,15 +82,15 @@ def write_picture(
                 draw_limits_over(axes, result, study, x, y, at)
             title = [title_of(result, at)]
             if what == "regime" and y is not None:
-                title.append(share_of(result.regimes, map_of(result, grid, x, y, at)))
+                title.append(cells.share_of(result.regimes, map_of(result, grid, x, y, at)))
             axes.set_title("\n".join(filter(None, title)), fontsize="small")
             axes.set(xlabel="", ylabel="")
         for axes in panels.flat[max(0, len(maps) - across) : len(maps)]:
-            axes.set_xlabel(LABELS.get(x, x))
+            axes.set_xlabel(cells.LABELS.get(x, x))
         for axes in panels[:, 0]:
-            axes.set_ylabel(LABELS.get(y, y) if y else what)
-        handles = regime_patches(result.regimes, grid) if what == "regime" else []
-        handles += limit_lines() if y in FORCE else []
+            axes.set_ylabel(cells.LABELS.get(y, y) if y else what)
+        handles = cells.regime_patches(result.regimes, grid) if what == "regime" else []
+        handles += cells.limit_lines() if y in FORCE else []
         if handles:
             figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
         if what != "regime" and image is not None:
@@ -160,13 +149,13 @@ def draw_limits_over(
     if found is not None:
         ends = axes.get_xlim(), axes.get_ylim()
         places, lower, upper = found
-        draw_limits(axes, result.axes[x][places], lower, upper)
+        cells.draw_limits(axes, result.axes[x][places], lower, upper)
         axes.set(xlim=ends[0], ylim=ends[1])
 
 
 def _draw_line(axes: Any, result: Result, x: str, values: Array, what: str) -> None:
     axes.plot(result.axes[x], values, "k.-", lw=0.6, ms=3)
-    set_scale(axes.xaxis, result.axes[x], log=is_log_along(result, x))
+    cells.set_scale(axes.xaxis, result.axes[x], log=is_log_along(result, x))
     if what == "regime":
         axes.set_yticks(range(len(result.regimes)), labels=result.regimes)
 
@@ -186,7 +175,7 @@ def write_page(result: Result, target: Path) -> None:
     note = f"{len(result)} strokes, by {result.meta['made_by']}."
     if result.meta["levels"]:
         note += " Where all strokes about were alike, those between were not computed."
-    off = f"may be some {RATE_ERROR:g} points off with another sample rate"
+    off = f"may be some {cells.RATE_ERROR:g} points off with another sample rate"
     note += f" A share of Helmholtz motion {off}."
     data = json.dumps(facts_of(result, x, y)).replace("<", "\\u003c")
     page = read_text(TEMPLATE)
@@ -219,7 +208,7 @@ def _axis(result: Result, name: str) -> dict[str, Any]:
     words = list(values) if is_text else None
     if name == "note":
         words = [note_name(float(value)) for value in values]
-    label = "note" if name == "note" else LABELS.get(name, name)
+    label = "note" if name == "note" else cells.LABELS.get(name, name)
     axis = {
         "label": label,
         "values": words or values.tolist(),
@@ -235,7 +224,7 @@ def _columns(result: Result, order: list[int]) -> list[dict[str, Any]]:
         {
             "label": "regime",
             "regimes": regimes,
-            "colours": [COLOURS.get(name, "#888888") for name in regimes],
+            "colours": [cells.COLOURS.get(name, "#888888") for name in regimes],
             "data": _packed(result.grid("regime").transpose(order)),
         }
     ]

@@ -8,8 +8,6 @@ nearby, slower bows and a firmer finger are tried. What is farther from what is 
 better.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from bisect import bisect_left

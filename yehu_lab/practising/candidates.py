@@ -1,7 +1,5 @@
 """The bowings that practising tries for a note, beside the best that it knows so far."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What practising plays: the notes of a fiddle on each string, and passages that they stand in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Write bowing tables, which ``yehu_server.playing.bowing_tables`` reads, as practice files."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

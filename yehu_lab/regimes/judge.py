@@ -5,8 +5,6 @@ slips, and after what time that repeats. A pitch detector alone errs by octaves 
 meet. docs/sweep.md defines the regimes, and how the rule was checked.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any
 

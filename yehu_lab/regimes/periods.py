@@ -1,7 +1,5 @@
 """When the hair slips, and after what time the motion of a bowed string repeats. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,8 +4,6 @@ A stroke moves controls along curves that all strokes of a `ControlCurves` share
 a curve's values, and moves and stretches its time. So many strokes are a few numbers each.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, NamedTuple

@@ -14,13 +14,7 @@ import numpy as np
 
 from yehu_lab.labels import ACCELERATION
 from yehu_lab.regimes.judge import check_length
-from yehu_lab.regimes.strokes import (
-    STROKE,
-    ControlCurves,
-    Instruments,
-    control_curves_of,
-    prepared,
-)
+from yehu_lab.regimes.strokes import STROKE, ControlCurves, Instruments, control_curves_of, prepared
 from yehu_lab.sweeps.axes import Axis, Value
 from yehu_lab.sweeps.note_strokes import distinct
 from yehu_server.core.physics.default_quantities import Quantities

@@ -4,8 +4,6 @@ A journal lies beside the result: ``FILE.npz.part``. Its first line is JSON: whi
 by which code. Then follow blocks of findings with checksums; one that a crash cut off is dropped.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

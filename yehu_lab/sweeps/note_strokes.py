@@ -12,26 +12,13 @@ from typing import Any
 import numpy as np
 
 from yehu_lab.regimes.judge import check_length
-from yehu_lab.regimes.strokes import (
-    STROKE,
-    ControlCurves,
-    Instruments,
-    control_curves_of,
-    prepared,
-)
+from yehu_lab.regimes.strokes import STROKE, ControlCurves, Instruments, control_curves_of, prepared
 from yehu_lab.sweeps.axes import Axis
 from yehu_server.core.physics.default_quantities import Quantities, override
 from yehu_server.core.physics.elementary import log
 from yehu_server.core.physics.grid import check_rate
 from yehu_server.core.physics.layout import F_N, FINGER_CONTROLS, TEXTURE, V_B, X_B
-from yehu_server.core.player.note_tables import (
-    OPEN_NOTES,
-    PITCHES,
-    SPEEDS,
-    NoteTables,
-    frequency_hz,
-    ideal_position,
-)
+from yehu_server.core.player import note_tables
 from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.stringing import notes_of
@@ -92,7 +79,7 @@ class Tuned:
     `measured`: the instrument that was calibrated, before it was tuned.
     """
 
-    calibration: NoteTables
+    calibration: note_tables.NoteTables
     quantities: Quantities
     measured: Quantities
 
@@ -100,14 +87,14 @@ class Tuned:
     def fingering(self, string: int, note: float, speed: float) -> tuple[float, float]:
         """Where a finger stops a note (m), as the player's tables say; its frequency (Hz)."""
         tuned = self.calibration
-        frequency = frequency_hz(note, STANDARD_A4)
+        frequency = note_tables.frequency_hz(note, STANDARD_A4)
         rows = np.array(tuned.sharpening[string])
         logarithm = log(speed)
-        at_speed = [float(np.interp(logarithm, np.log(SPEEDS), row)) for row in rows]
-        in_tables = note - (tuned.open_notes[string] - OPEN_NOTES[string])
-        sharp = float(np.interp(in_tables, PITCHES[string], at_speed))
+        at_speed = [float(np.interp(logarithm, np.log(note_tables.SPEEDS), row)) for row in rows]
+        in_tables = note - (tuned.open_notes[string] - note_tables.OPEN_NOTES[string])
+        sharp = float(np.interp(in_tables, note_tables.PITCHES[string], at_speed))
         ideal = frequency * 2.0 ** (-sharp / 1200.0)
-        return ideal_position(tuned.tuned(self.measured), string, ideal), frequency
+        return note_tables.ideal_position(tuned.tuned(self.measured), string, ideal), frequency
 
 
 @dataclass(frozen=True)
@@ -156,7 +143,7 @@ class NoteBow:
                 self._quantities({axis.name: value})
         deepest = float(min(values["note"]))
         bowed = round((self.duration - BOW_MOVES) * self.rate)
-        check_length(bowed, self.rate, frequency_hz(deepest, STANDARD_A4) / SLACK)
+        check_length(bowed, self.rate, note_tables.frequency_hz(deepest, STANDARD_A4) / SLACK)
 
     def strokes(
         self, axes: Sequence[Axis], index: Array
@@ -229,7 +216,7 @@ class NoteBow:
         """
         own = override(Quantities(), self.instrument, self.folder)
         try:
-            is_yehu = notes_of(own).open_notes == OPEN_NOTES
+            is_yehu = notes_of(own).open_notes == note_tables.OPEN_NOTES
         except ParameterError:  # strings that no fiddle has
             is_yehu = True
         if not is_yehu:

@@ -3,8 +3,6 @@
 Every signal of its strokes is kept on demand, each in a file as `simulate` writes it.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Callable, Iterator

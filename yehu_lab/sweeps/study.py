@@ -3,8 +3,6 @@
 docs/sweep.md describes its file.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -195,8 +193,5 @@ def limits_of(study: Study, at: Mapping[str, int]) -> Limits:
     R = resistance(model, string, frequency, stop, press)  # noqa: N806
     speed = abs(end(V_B))
     return Limits(
-        lower_limit(Z, grip, R, speed, beta),
-        upper_limit(Z, grip, speed, beta),
-        beta,
-        frequency,
+        lower_limit(Z, grip, R, speed, beta), upper_limit(Z, grip, speed, beta), beta, frequency
     )

@@ -1,7 +1,5 @@
 """The bow forces between which strokes of a result speak, beside Schelleng's limits."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

@@ -1,4 +1,1 @@
-"""The instrument compiled ahead of time: as WebAssembly for pages, as a library for C programs.
-
-Both are made from the functions that the server plays by, and hold no Python.
-"""
+"""The instrument compiled ahead of time, without Python: WebAssembly for pages, a C library."""

@@ -4,8 +4,6 @@ A process compiles for one level of processors, so another level's code is made 
 `python -m yehu_server.ahead.build`.
 """
 
-from __future__ import annotations
-
 import logging
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The hash of all that a build is made from, and the section of WebAssembly that has it."""
 
-from __future__ import annotations
-
 import hashlib
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Write the C header of the library: functions, events, parameters, tables, snapshots."""
 
-from __future__ import annotations
-
 import inspect
 import re
 import textwrap

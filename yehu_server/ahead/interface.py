@@ -6,19 +6,12 @@ one other thread, and on that one `midi`, `control` and `use_tables`, which post
 `frame`, `value`, `pitch`, `snapshot` and `lost`, which only read.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from yehu_server.ahead.table_checks import (
-    check_binds,
-    check_curves,
-    check_fields,
-    check_values,
-)
+from yehu_server.ahead.table_checks import check_binds, check_curves, check_fields, check_values
 from yehu_server.compile.jit import Native, native
 from yehu_server.compile.memory import WORD, carray
 from yehu_server.core.controls.record import CONTROLS

@@ -4,8 +4,6 @@ A page gives its memory (`interpreter_size` bytes, aligned to 8), prepares it, w
 slot, and has events interpreted; what each comes to is in the part's record (``midi.record``).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any

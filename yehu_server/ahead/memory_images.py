@@ -1,9 +1,4 @@
-"""Images of instruments: the record of one that is ready to play, for each of the usual rates.
-
-Only words that are not zero are kept, as runs: where one begins, how long it is, and its words.
-"""
-
-from __future__ import annotations
+"""Images of instruments ready to play, at each usual rate: runs of words that are not zero."""
 
 from collections.abc import Iterable
 from itertools import chain, pairwise

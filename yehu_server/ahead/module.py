@@ -4,8 +4,6 @@ numba's functions call Python only to report an exception. These raise none, so 
 stops the program instead, and falls away where LLVM sees that it is never reached.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass

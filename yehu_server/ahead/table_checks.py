@@ -5,8 +5,6 @@ that Python writes are right; others could lead outside the arrays, or to values
 numbers.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Arguments as users give them, checked; what playing needs, compiled; how to play by them."""
 
-from __future__ import annotations
-
 import logging
 import math
 import os

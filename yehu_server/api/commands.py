@@ -1,7 +1,5 @@
 """Commands to an instrument for Python: notes, parameters, and a bow drawn by hand."""
 
-from __future__ import annotations
-
 from yehu_server.api.checks import number, setting
 from yehu_server.api.notes import pitch_of, playable
 from yehu_server.core.engine.instrument import Instrument as Engine

@@ -1,7 +1,5 @@
 """A voice or a recording, followed: what was heard as arrays, and the performance it becomes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 

@@ -1,7 +1,5 @@
 """The instrument for Python: commands or controls in, arrays of sound and signals out."""
 
-from __future__ import annotations
-
 import zlib
 from collections.abc import Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Notes and pitches as users write them; notes made a score."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable

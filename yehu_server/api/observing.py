@@ -1,7 +1,5 @@
 """Compute samples of an instrument, and keep what its model was given and did at each."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -18,14 +16,7 @@ from yehu_server.core.physics.layout import MAX_FINGERS, STRINGS, control_column
 from yehu_server.errors import ParameterError
 from yehu_server.params.table import SLOT
 from yehu_server.playing.player import Player
-from yehu_server.simulation.run import (
-    MAX_BYTES,
-    Simulation,
-    metadata_of,
-    shape_of,
-    shapes_of,
-    signals,
-)
+from yehu_server.simulation import run
 
 Floats = NDArray[np.float64]
 
@@ -95,7 +86,7 @@ class Run:
             self._stage.process(out[start:end])
         return out
 
-    def signals(self, frames: int, channels: int, strings_every: int) -> Simulation:
+    def signals(self, frames: int, channels: int, strings_every: int) -> run.Simulation:
         """Compute samples and keep all signals; see `api.instrument.Instrument.record`.
 
         Raises ParameterError where the arrays would take more than MAX_BYTES.
@@ -105,9 +96,9 @@ class Run:
         nodes = int(model["N"].sum()) + STRINGS
         columns = probe_columns(MAX_FINGERS) + control_columns(MAX_FINGERS) + channels
         shapes = frames // strings_every * nodes if strings_every else 0
-        if 8 * (frames * columns + shapes) > MAX_BYTES:
+        if 8 * (frames * columns + shapes) > run.MAX_BYTES:
             raise ParameterError(
-                f"{frames} samples would take more than {MAX_BYTES >> 30} GiB: "
+                f"{frames} samples would take more than {run.MAX_BYTES >> 30} GiB: "
                 "record less at a time, or the strings less often"
             )
         out = np.zeros(frames if channels == 1 else (frames, channels), np.float32)
@@ -119,7 +110,7 @@ class Run:
         while start < frames:
             if strings_every and start % every == 0:
                 for i in range(STRINGS):
-                    kept[i].append(shape_of(model, state["motion"], i))
+                    kept[i].append(run.shape_of(model, state["motion"], i))
             end = min(start + CHUNK, start - start % every + every, frames)
             self._move(start, end, frames)
             self._stage.process(out[start:end])
@@ -127,14 +118,14 @@ class Run:
             probes[start:end] = output["probes"][: end - start]
             controls[start:end] = output["controls"][: end - start]
             start = end
-        arrays: dict[str, NDArray[Any]] = {"sound": out} | signals(
+        arrays: dict[str, NDArray[Any]] = {"sound": out} | run.signals(
             probes, controls, self._instrument.rate
         )
         quantities = self._instrument.spec.quantities
         if strings_every:
-            arrays |= shapes_of(kept, model, quantities, arrays["time"][::strings_every])
-        metadata = metadata_of(model, state, frames, quantities, self._rig["refined"])
-        return Simulation(arrays, {"seed": self._instrument.seed} | metadata)
+            arrays |= run.shapes_of(kept, model, quantities, arrays["time"][::strings_every])
+        metadata = run.metadata_of(model, state, frames, quantities, self._rig["refined"])
+        return run.Simulation(arrays, {"seed": self._instrument.seed} | metadata)
 
     def _take_over(self) -> None:
         """Take the parameters of the curves from the player, and put them to their first values."""

@@ -1,7 +1,5 @@
 """Let a sound be heard: by a player in a notebook, or by the sound device."""
 
-from __future__ import annotations
-
 import base64
 import io
 import sys

@@ -1,7 +1,5 @@
 """Scores and notes to sound, as arrays."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace

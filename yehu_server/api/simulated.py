@@ -1,7 +1,5 @@
 """A gesture to arrays: the model alone, in physical units."""
 
-from __future__ import annotations
-
 import os
 import warnings
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """The command line: a module for each command."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import importlib

@@ -6,7 +6,8 @@ import argparse
 import contextlib
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -60,11 +61,21 @@ def add_options(group: Any, table: str, /, **details: Any) -> None:
             words["metavar"] = value
         else:
             names.append(value)
-            if len(words) == 1:
+            if words.keys() <= {"help", "dest"}:
                 words["action"] = "store_true"
         group.add_argument(*names, **words)
     if details:
         raise TypeError(f"no row of the table is of {', '.join(details)}")
+
+
+def chosen(kind: Any, arguments: argparse.Namespace, but: Collection[str] = ()) -> dict[str, Any]:
+    """The arguments that are fields of a dataclass of options, as they are; none that is None."""
+    names = {each.name for each in fields(kind)}.difference(but)
+    return {
+        name: value
+        for name, value in vars(arguments).items()
+        if name in names and value is not None
+    }
 
 
 def add_cluster(group: Any) -> None:

@@ -12,8 +12,6 @@ build plugin makes a plug-in for music programs (docs/plugin.md). build tables w
 tuning and presets for pages and C programs, as numbers; docs/ahead.md describes how they use them.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import Any

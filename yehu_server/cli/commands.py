@@ -5,8 +5,6 @@ the distribution's file beside the packages, or from a checkout's pyproject.toml
 finds more, but to load it takes a fifth of what ``--help`` does.
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator

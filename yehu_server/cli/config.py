@@ -1,7 +1,5 @@
 """Read options of a command from a TOML file: any option, by its name without the dashes."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path

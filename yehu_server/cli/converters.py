@@ -1,7 +1,5 @@
 """Converters of arguments: text to value, or an error for argparse."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import urllib.parse

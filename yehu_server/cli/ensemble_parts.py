@@ -41,11 +41,9 @@ def players_of(
 ) -> Players:
     """Give each part of some scores, which are played one after another, a player.
 
-    Raises YehuError where there are too many parts, or what a file names is not there.
-
-    `scores_for`: reads the scores, with their parts moved into the range of an instrument, or with
-        None as they are written; and with the key switches of a mapping.
-    `playing`: of all players, where an ensemble file does not say otherwise.
+    Raises YehuError where there are too many parts, or what a file names is not there. `scores_for`
+    reads the scores, in the range of an instrument or with None as they are written, with the key
+    switches of a mapping; `playing` is where an ensemble file says nothing else.
     """
     from yehu_server.playing.parts import seated
     from yehu_server.playing.stringing import notes_of

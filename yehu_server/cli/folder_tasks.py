@@ -14,13 +14,7 @@ from typing import TYPE_CHECKING, Any
 from yehu_server.cli.arguments import replaceable
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.rendering import build_records
-from yehu_server.util.files import (
-    check_distinct,
-    check_free,
-    check_target,
-    error_reason,
-    shipped_folder,
-)
+from yehu_server.util import files
 
 if TYPE_CHECKING:
     from yehu_server.rendering.folder_tree import Entry
@@ -55,7 +49,7 @@ def perform(task: Task, report_progress: ProgressCallback) -> Line:
             for shown in (path, ascii(path)):
                 reason = reason.removeprefix(f"{shown}: ")
     except OSError as error:
-        reason = f"cannot write: {error_reason(error)}"
+        reason = f"cannot write: {files.error_reason(error)}"
     except MemoryError:
         reason = "not enough memory"
     except Exception as error:  # the others have to be rendered
@@ -77,9 +71,9 @@ def _made(task: Task, work: Path, report_progress: ProgressCallback) -> Line:
         os.chdir(task.folder)
     may_replace = replaceable(options)
     build_records.make_folder_for(entry.target)
-    check_target(entry.target)
-    check_free(entry.target, may_replace)
-    check_distinct({"-o": entry.target}, [entry.source])
+    files.check_target(entry.target)
+    files.check_free(entry.target, may_replace)
+    files.check_distinct({"-o": entry.target}, [entry.source])
     own = argparse.Namespace(**vars(options))
     own.midi, own.output = [entry.source], work
     own.overwrite, own.quiet, own.json, own.jobs = True, False, False, 1
@@ -100,11 +94,11 @@ def _made(task: Task, work: Path, report_progress: ProgressCallback) -> Line:
             each.removeprefix("yehu-server: ") for each in printed.getvalue().splitlines()
         ],
     }
-    check_free(entry.target, may_replace)
+    files.check_free(entry.target, may_replace)
     work.replace(entry.target)
     read = [path for path in done.read if path != entry.source]
     if options.programs:  # the presets that they may select
-        folders = [shipped_folder("presets"), *filter(None, (options.presets,))]
+        folders = [files.shipped_folder("presets"), *filter(None, (options.presets,))]
         read += sorted(path for each in folders for path in each.glob("*.toml"))
     build_records.keep(entry.target, task.key, read, [entry.target], line)
     return line

@@ -17,6 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from yehu_server.cli import sound_options
 from yehu_server.cli.arguments import (
     add_command,
     add_instrument,
@@ -28,14 +29,6 @@ from yehu_server.cli.arguments import (
 )
 from yehu_server.cli.converters import hours, number_within, target
 from yehu_server.cli.playing_options import add_playing, playing_options_of
-from yehu_server.cli.sound_options import (
-    PLOTTED_BLOCK,
-    add_sound,
-    add_space,
-    check_sound,
-    in_room,
-    sound_options_of,
-)
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn, warn_of_lost
 from yehu_server.errors import OutputError
 from yehu_server.scores.score import MAX_DURATION_H
@@ -80,8 +73,8 @@ def add_to(commands: Any) -> None:
         plot=target,
         subtype={"choices": tuple(SUBTYPES)},
     )
-    add_sound(parser)
-    add_space(parser)
+    sound_options.add_sound(parser)
+    sound_options.add_space(parser)
     add_instrument(parser)
     add_playing(parser)
     add_reporting(parser)
@@ -136,8 +129,8 @@ def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
     from yehu_server.util.sound_file import format_of
 
     ending = arguments.output.suffix.lower()
-    check_sound(arguments)
-    playing = in_room(playing_options_of(arguments), arguments)
+    sound_options.check_sound(arguments)
+    playing = sound_options.in_room(playing_options_of(arguments), arguments)
     if arguments.plot is not None and ending in (*MIDI, *CAPTURE):
         raise OutputError("--plot shows what is played: name a sound file with -o")
     outputs = {"-o": arguments.output, **picture_output(arguments)}
@@ -148,7 +141,7 @@ def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
     else:
         form = format_of(arguments.output)
         check_output(arguments)
-    return playing, sound_options_of(arguments, form)
+    return playing, sound_options.sound_options_of(arguments, form)
 
 
 def _write(
@@ -179,7 +172,7 @@ def _write(
     watch = None
     if arguments.plot is not None:
         watch = PlotData(float(options.rate), found.score.duration_s, 1, playing.a4)
-        options = replace(options, block=PLOTTED_BLOCK)
+        options = replace(options, block=sound_options.PLOTTED_BLOCK)
     with progress_bar(arguments, "playing") as progress:
         if ending in CAPTURE:
             render_capture(parts, output, options, progress, overwrite=arguments.overwrite)

@@ -9,8 +9,6 @@ The written page is static files, for any web server.
 docs/page.md describes what the page does.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import io

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_options
+from yehu_server.cli.arguments import add_options, chosen
 from yehu_server.cli.converters import number_within, whole_within
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
@@ -18,6 +18,18 @@ if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
     from yehu_server.playing.options import PlayingOptions
     from yehu_server.playing.tuning import Tuning
+
+# Arguments that are something else than the fields of `PlayingOptions` of their names.
+OTHER = (
+    "channels",
+    "instrument",
+    "mapping",
+    "open_strings",
+    "practice",
+    "preset",
+    "presets",
+    "tuning",
+)
 
 
 def add_playing(group: Any) -> None:
@@ -127,17 +139,12 @@ def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) 
     """
     from yehu_server.core.player.fingering import OpenStrings
 
-    beside: dict[str, Any] = {  # those of a command that has them
-        name: getattr(arguments, name, None) for name in ("phrasing", "rubato", "gain_db")
-    }
     channel = getattr(arguments, "channel", None)
     playing = replace(
         table_options_of(arguments, is_live=is_live),
         settings=tuple(assignment(text) for text in arguments.set),
         open_strings=OpenStrings(arguments.open_strings),
-        seed=arguments.seed,
         channels=None if channel is None else frozenset(channel),
-        **beside,
     )
     return playing.on_instrument(arguments.instrument, arguments.practice)
 
@@ -157,10 +164,9 @@ def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) ->
     if arguments.presets and not arguments.presets.is_dir():
         warn(f"--presets {arguments.presets}: no such folder yet; --preset chooses a preset")
     playing = PlayingOptions(
+        **chosen(PlayingOptions, arguments, but=OTHER),
         mapping=mapping_of(arguments, is_live=is_live),
         presets=Presets(arguments.presets, user_first=user_first),
-        programs=arguments.programs,
-        a4=arguments.a4,
         tuning=tuning_of(arguments),
         policy=RangePolicy(arguments.range),
     )

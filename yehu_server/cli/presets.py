@@ -7,8 +7,6 @@
 docs/parameters.md describes the values.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from collections.abc import Iterable

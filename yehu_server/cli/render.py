@@ -15,8 +15,6 @@ Ensemble files are described in docs/ensemble.md.
 docs/midi_files.md describes how damaged MIDI files are read.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -9,15 +9,10 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from yehu_server.cli import sound_options
 from yehu_server.cli.arguments import check_output, picture_output
 from yehu_server.cli.ensemble_parts import Players, players_of
 from yehu_server.cli.playing_options import playing_options_of
-from yehu_server.cli.sound_options import (
-    PLOTTED_BLOCK,
-    check_stage,
-    in_room,
-    sound_options_of,
-)
 from yehu_server.cli.terminal import compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
 from yehu_server.rendering import PIPE
@@ -56,15 +51,15 @@ def rendered(
     from yehu_server.rendering.options import Part
     from yehu_server.rendering.to_files import render
 
-    check_stage(arguments)
-    playing = in_room(playing_options_of(arguments), arguments).shaping(PHRASING)
+    sound_options.check_stage(arguments)
+    playing = sound_options.in_room(playing_options_of(arguments), arguments).shaping(PHRASING)
     outputs = {} if arguments.output is PIPE else {"-o": arguments.output}
     outputs |= picture_output(arguments)
     check_distinct(outputs, [*arguments.midi, *playing.files])
     form = _format(arguments)
     may_replace = replace_any if arguments.output is PIPE else check_output(arguments)
     _warn_of_own(arguments, playing)
-    options = sound_options_of(arguments, form)
+    options = sound_options.sound_options_of(arguments, form)
     scores = cache(partial(_scores, arguments, playing))
     own = playing.quantities, playing.mapping.key_switches
     if arguments.ensemble is None:
@@ -89,7 +84,7 @@ def rendered(
 
         longest_s = max(part.score.duration_s for part in parts)
         watch = PlotData(float(options.rate), longest_s, len(parts), playing.a4)
-        options = replace(options, block=PLOTTED_BLOCK)
+        options = replace(options, block=sound_options.PLOTTED_BLOCK)
     with progress_bar(arguments, "rendering") as progress:
         listen = follow or progress
         summary = render(parts, arguments.output, options, listen, may_replace, stems, watch)

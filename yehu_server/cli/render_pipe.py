@@ -1,7 +1,5 @@
 """``yehu-server render - -o -``: a score from standard input, sound to standard output."""
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import os

@@ -6,8 +6,6 @@
 The capture file is described in docs/capture.md.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import Any

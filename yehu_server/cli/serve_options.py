@@ -1,12 +1,10 @@
 """Arguments of serve, and the options of the server made from them."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import Parser, add_options
+from yehu_server.cli.arguments import Parser, add_options, chosen
 from yehu_server.cli.config import add_config
 from yehu_server.cli.converters import number_within, port, positive, target, whole_within, within
 from yehu_server.cli.part_options import add_parts, part_options, routes_of
@@ -29,6 +27,8 @@ from yehu_server.util.files import check_distinct
 HERE = ("127.0.0.0/8", "::1")
 FIRST_NOTE = "first-note"
 ANY_INPUT = ""
+# Arguments that are something else than the fields of options of their names.
+OTHER = ("follow", "http", "osc", "parts")
 
 
 def add_arguments(parser: Parser) -> None:
@@ -113,7 +113,7 @@ def add_arguments(parser: Parser) -> None:
         --jitter-buffer MS: delay incoming messages by this time, so that they keep their rhythm
             (default: the largest block that the device asks for, and 1 ms)
         """,
-        jitter_buffer=number_within(0.0, 1000.0, "ms"),
+        jitter_buffer={"type": number_within(0.0, 1000.0, "ms"), "dest": "jitter_ms"},
     )
     add_parts(parser.add_argument_group("the stage"))
     group = parser.add_argument_group("running")
@@ -163,14 +163,9 @@ def options_of(arguments: argparse.Namespace) -> Any:
         check_api(arguments.midi_api)
         named = (arguments.midi_in, arguments.virtual_midi, arguments.midi_api)
         midi = MidiOptions(*named, routes=routes_of(arguments, parts))
-    options = ServeOptions(
-        output=OutputOptions(
-            device=arguments.audio_device,
-            rate=arguments.rate,
-            blocksize=arguments.blocksize,
-            latency=arguments.latency,
-            channels=arguments.channels,
-        ),
+    return ServeOptions(
+        **chosen(ServeOptions, arguments, but=OTHER),
+        output=OutputOptions(arguments.audio_device, **chosen(OutputOptions, arguments, but=OTHER)),
         midi=midi,
         follow=_follow_of(arguments),
         osc=parse_address(arguments.osc, *OSC_ADDRESS),
@@ -179,18 +174,10 @@ def options_of(arguments: argparse.Namespace) -> Any:
         if arguments.http != "none"
         else None,
         page=_page_of(arguments),
-        announce=arguments.announce,
         parts=parts,
-        has_room=not arguments.dry,
-        jitter_ms=arguments.jitter_buffer,
-        record=arguments.record,
+        has_room=not arguments.is_dry,
         waits_for_sound=arguments.record_from == FIRST_NOTE,
-        capture=arguments.capture,
-        overwrite=arguments.overwrite,
     )
-    if arguments.recordings is not None:
-        options.recordings = arguments.recordings
-    return options
 
 
 def _follow_of(arguments: argparse.Namespace) -> Any:

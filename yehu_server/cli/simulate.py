@@ -6,8 +6,6 @@
 The gesture file is described in docs/simulate.md.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import Any

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from yehu_server.cli.arguments import add_options
+from yehu_server.cli.arguments import add_options, chosen
 from yehu_server.cli.converters import number_within, positive, target, whole
 from yehu_server.errors import ParameterError
 
@@ -35,7 +35,7 @@ def add_sound(group: Any) -> None:
         --normalize: scale the result to a true peak of -1 dBFS (with --stems, the loudest file)
         """,
         rate={"type": whole, "default": 44100},
-        tail=number_within(0.0, 600.0, "s"),
+        tail={"type": number_within(0.0, 600.0, "s"), "dest": "tail_s"},
         gain_db=number_within(-60.0, 24.0, "dB"),
     )
 
@@ -48,13 +48,18 @@ def add_room(group: Any) -> None:
         --room NAME: the room: one of the presets of rooms, such as hall, or a file
         --dry: no room, and the same sound on both sides (default: a chamber)
         """,
+        dry={"dest": "is_dry"},
     )
 
 
 def add_space(group: Any) -> None:
     """Add the options of the room and of the channels of a sound file."""
     add_room(group)
-    add_options(group, "--mono: write one channel, the mean of left and right")
+    add_options(
+        group,
+        "--mono: write one channel, the mean of left and right",
+        mono={"dest": "is_mono"},
+    )
 
 
 def add_stage(parser: Any) -> None:
@@ -98,7 +103,7 @@ def check_sound(arguments: argparse.Namespace) -> None:
 
 def check_room(arguments: argparse.Namespace) -> None:
     """Refuse a room without a room: raises ParameterError."""
-    if arguments.dry and arguments.room is not None:
+    if arguments.is_dry and arguments.room is not None:
         raise ParameterError("--dry means no room: leave out --room")
 
 
@@ -127,16 +132,7 @@ def sound_options_of(arguments: argparse.Namespace, form: str) -> Options:
     subtype = arguments.subtype or ("float" if form == "raw" else "24")
     if form != "raw":
         check_format(form, subtype)
-    return Options(
-        rate=arguments.rate,
-        format_name=form,
-        subtype=subtype,
-        tail_s=arguments.tail,
-        normalize=arguments.normalize,
-        is_dry=arguments.dry,
-        is_mono=arguments.mono,
-        jobs=getattr(arguments, "jobs", None),
-    )
+    return replace(Options(**chosen(Options, arguments)), format_name=form, subtype=subtype)
 
 
 def room_of(name: str, presets: Presets) -> Values:

@@ -8,8 +8,6 @@
 docs/surfaces.md describes how to open each.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import Any

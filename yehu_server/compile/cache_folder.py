@@ -4,8 +4,6 @@ numba does not notice when a compiled function's callee changes in another file,
 hash of all sources that may be compiled; functions of other packages have one of their own.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import shutil

@@ -7,8 +7,6 @@ level, has the machine code of a function that is called by address. What fails 
 line and compiled anew; what cannot be kept is played all the same.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import logging

@@ -189,13 +189,7 @@ C_TYPES: dict[str, Any] = {
     "uint64": ctypes.c_uint64,
     "float64": ctypes.c_double,
 }
-C_TYPE_OF = {
-    NoneType: "void",
-    Any: "voidptr",
-    bool: "int64",
-    int: "int64",
-    float: "float64",
-}
+C_TYPE_OF = {NoneType: "void", Any: "voidptr", bool: "int64", int: "int64", float: "float64"}
 Int32 = Annotated[int, "int32"]
 UInt64 = Annotated[Any, "uint64"]
 

@@ -4,8 +4,6 @@ All processors of a level run the same instructions, so one set of sources gives
 each of them. A bowed string is chaotic: one rounding that differs is heard seconds later.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from functools import cache

@@ -9,8 +9,6 @@ The file has a checksum. Inside are a line of JSON, which says what it was made 
 and the functions' object files, compressed; each comes after those that it calls.
 """
 
-from __future__ import annotations
-
 import ctypes
 import functools
 import io

@@ -1,7 +1,5 @@
 """Records for code that runs as plain Python (``NUMBA_DISABLE_JIT=1``)."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 from collections.abc import Callable

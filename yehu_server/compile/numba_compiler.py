@@ -4,8 +4,6 @@ What is compiled names other functions and intrinsics as `jit.Deferred`; numba s
 for. In the place of a `jit.Native` it sees an external function.
 """
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable
 from functools import cache

@@ -1,9 +1,4 @@
-"""numba's compiler without what none of our functions needs: two thirds of its time in Python.
-
-The code that LLVM gets is the same, to the byte.
-"""
-
-from __future__ import annotations
+"""numba's compiler without what our functions need not: a third of its time, the same code."""
 
 from typing import Any
 

@@ -4,8 +4,6 @@ Imported before anything is compiled. What is compiled stays the same, to the by
 thirds of the time.
 """
 
-from __future__ import annotations
-
 import contextlib
 from typing import Any
 

@@ -4,8 +4,6 @@ Functions call each other by name, so they can be compiled at a time. A process 
 even import numba then: it loads what these leave in the cache.
 """
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import os

@@ -6,8 +6,6 @@ periods as fit. The tracker is [SwiftF0], a small network whose weights come wit
 docs/decisions/0026-the-tracker.md compares it with others.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import Any
 

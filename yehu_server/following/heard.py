@@ -5,8 +5,6 @@ candidates it is: a candidate costs more the less clear it is, and the surer the
 another; a leap costs, so that the octave is not wrong for a moment.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

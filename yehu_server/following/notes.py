@@ -1,7 +1,5 @@
 """Find strokes and notes in an analysed recording: where a bow would change, and where a finger."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any

@@ -3,8 +3,6 @@
 The player does the rest: which string and finger, how the bow is drawn so that the string speaks.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Read recordings to follow in blocks, as one channel at the sample rate of the analysis."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 from collections.abc import Callable, Iterator

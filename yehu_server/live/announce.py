@@ -1,7 +1,5 @@
 """Announce the server on the network by zeroconf (Bonjour)."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import ipaddress
@@ -50,10 +48,7 @@ def _reached(host: str) -> str:
 
 
 class Announcer:
-    """Announces services from `start` to `stop`, in a thread of its own.
-
-    `on_message`: called with the name they are announced by, or why they are not.
-    """
+    """Announces services, from `start` to `stop`, in a thread; reports to `on_message`."""
 
     def __init__(self, services: Sequence[Service], on_message: Callable[[str], None]) -> None:
         self._services = services

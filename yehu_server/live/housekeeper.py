@@ -4,8 +4,6 @@ The delay follows the device's period, the capture is written, mappings are read
 goes wrong is reported.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import threading
@@ -28,11 +26,8 @@ Marks = dict[Path, tuple[int, int, int] | None]
 class MappingWatch:
     """Polls the files of a mapping.
 
-    A change counts once the files were the same at two polls in a row, so that none is read
-    half written.
-
-    `mapping`: the mapping in use.
-    `read`: reads it again; raises MappingError where it is wrong.
+    A change counts once the files were the same at two polls in a row, so that none is read half
+    written. `read` reads the mapping again; raises MappingError where it is wrong.
     """
 
     def __init__(self, mapping: Mapping, read: Callable[[], Mapping]) -> None:
@@ -78,10 +73,7 @@ TURN_EVERY_S = 0.05
 
 
 class CounterReport:
-    """Reports counts that grow, each at once and then in periods.
-
-    `on_message`: called with each line.
-    """
+    """Reports counts that grow, by a line for `on_message`: each at once and then in periods."""
 
     def __init__(self, on_message: Callable[[str], None]) -> None:
         self._on_message = on_message

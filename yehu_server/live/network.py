@@ -1,7 +1,5 @@
 """Network addresses: reading and writing them, and which senders are allowed."""
 
-from __future__ import annotations
-
 import contextlib
 import ipaddress
 import re
@@ -24,11 +22,9 @@ ANYWHERE = "0.0.0.0"  # noqa: S104 - nothing is bound to it here
 
 
 class Allowed:
-    """The networks whose hosts may send; without any, all may.
+    """The networks, such as ``192.168.1.0/24``, whose hosts may send; without any, all may.
 
     Raises ParameterError where one is not a network.
-
-    `networks`: such as ``192.168.1.0/24``.
     """
 
     def __init__(self, networks: Iterable[str] = ()) -> None:
@@ -93,10 +89,7 @@ def format_address(host: str, port: int) -> str:
 
 
 def parse_address(text: str, default_host: str, default_port: int) -> Address:
-    """Read ``HOST:PORT``, ``HOST`` or ``:PORT``; IPv6 with a port as ``[HOST]:PORT``.
-
-    Raises ParameterError where it is none of these.
-    """
+    """Read HOST:PORT, HOST, :PORT or [IPv6]:PORT; raises ParameterError for anything else."""
     host, colon, port = text.rpartition(":")
     is_bare_ipv6 = ":" in host and not host.endswith("]")
     if not colon or text.endswith("]") or is_bare_ipv6:

@@ -1,7 +1,5 @@
 """Options of a live server, and of each of its parts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

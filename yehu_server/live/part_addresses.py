@@ -1,7 +1,5 @@
 """Addresses of parts: ``/part/N`` before the addresses of the players on the stage, from 1."""
 
-from __future__ import annotations
-
 import re
 
 from yehu_server.errors import ParameterError

@@ -1,7 +1,5 @@
 """The live server: constructs its services, starts them in order and stops them."""
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import logging
@@ -225,10 +223,7 @@ class Server:
         self._housekeeper.start()
 
     def stop(self) -> None:
-        """End all notes, wait until they have faded, and close everything.
-
-        Recording and capture are closed whatever else fails. Called again, it does nothing.
-        """
+        """End all notes, let them fade, and close all, whatever fails; again, do nothing."""
         if self._housekeeper.is_ended:
             return
         try:

@@ -3,8 +3,6 @@
 Sizes are in bytes. ``A_HOST`` is of all ports of one host together.
 """
 
-from __future__ import annotations
-
 from yehu_server.core.engine.mailbox import PAGE_QUEUES
 
 # OSC that is received. A longer datagram is dropped; a longer packet ends its connection.

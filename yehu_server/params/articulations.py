@@ -4,8 +4,6 @@ An articulation is a value of `/playing/articulation`: its place in `ARTICULATIO
 stay for ever; new ones come last. `core.player.gestures` plays them.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from yehu_server.errors import ParameterError, did_you_mean
@@ -251,10 +249,7 @@ LAST = 127  # highest value: a controller's, with numbers left for new ones
 
 
 def number_of(name: str) -> int:
-    """The value of `/playing/articulation` for a name, English or Chinese.
-
-    Raises ParameterError where there is none; with a similar name if there is one.
-    """
+    """The value of `/playing/articulation` for a name, English or Chinese, or a ParameterError."""
     for number, articulation in enumerate(ARTICULATIONS):
         if name in (articulation.name, articulation.chinese):
             return number

@@ -1,9 +1,4 @@
-"""Read presets, values of parameters by address, from text, and interpolate between two.
-
-The format is described in presets/README.md.
-"""
-
-from __future__ import annotations
+"""Read presets (presets/README.md), values by address, and interpolate between two."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The metadata of a parameter: address, range, default, unit, curve; no values."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import Enum
@@ -73,20 +71,14 @@ class Param:
     is_shared: bool = False
 
     def clamped(self, value: float) -> float:
-        """Clamp a value to the range.
-
-        Raises ParameterError where the value is not a finite number.
-        """
+        """Clamp a value to the range; raises ParameterError where it is not finite."""
         try:
             return min(max(number(value), self.lo), self.hi)
         except ParameterError as error:
             raise ParameterError(f"{self.address}: {error}") from None
 
     def within(self, value: Any) -> float:
-        """A value within the range.
-
-        Raises ParameterError where it is none, without the address.
-        """
+        """A value within the range; a ParameterError, without the address, where it is none."""
         return number(value, self.lo, self.hi, self.unit)
 
     @property

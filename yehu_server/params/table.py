@@ -1,7 +1,5 @@
 """The parameter table, the only source of names, ranges, defaults and descriptions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 
@@ -228,10 +226,7 @@ SLOT = {param.address: slot for slot, param in enumerate(ENGINE)}
 
 
 def find(address: str) -> Param:
-    """Find the parameter of an address.
-
-    Raises ParameterError where there is none; with a similar address if there is one.
-    """
+    """Find the parameter of an address; ParameterError, with a similar one, where there is none."""
     try:
         return BY_ADDRESS[address]
     except KeyError:

@@ -12,10 +12,9 @@ from yehu_server.playing import sources
 
 @dataclass(frozen=True)
 class Breakpoints:
-    """A curve given by points and joined by straight lines; in files, a table of points.
+    """A curve of straight lines between points (position, fraction), both 0 to 1.
 
-    Each point is (position of the source, fraction of the span), both 0 to 1. Positions rise
-    strictly from 0 to 1; fractions may fall or stay the same.
+    Positions rise strictly from 0 to 1; fractions may fall or stay the same.
     """
 
     points: tuple[tuple[float, float], ...]

@@ -1,9 +1,4 @@
-"""Read bowing tables: those shipped for usual sample rates, or the user's own.
-
-Users know such a file as a practice: `practise` writes it, `--practice` takes it.
-"""
-
-from __future__ import annotations
+"""Read bowing tables, shipped or the user's own ("practices", of `practise`)."""
 
 import json
 from functools import lru_cache

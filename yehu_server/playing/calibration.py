@@ -5,8 +5,6 @@ finger moved until it is in tune. `playing.calibration_store` keeps the results,
 everything that they depend on.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -50,12 +48,7 @@ from yehu_server.core.player.note_tables import (
 )
 from yehu_server.params.table import find
 from yehu_server.playing.bowing_tables import shipped_bowing_table
-from yehu_server.playing.pitch_and_level import (
-    SILENCE_DB,
-    a_weighted_db,
-    cents,
-    pitch_hz,
-)
+from yehu_server.playing.pitch_and_level import SILENCE_DB, a_weighted_db, cents, pitch_hz
 from yehu_server.playing.stringing import notes_of
 from yehu_server.util import PACKAGE
 from yehu_server.util.loudness import a_weighting
@@ -117,15 +110,11 @@ def calibrate(
     bowing: Array | None = None,
     progress: Progress | None = None,
 ) -> NoteTables:
-    """Measure a calibration by bowing the model.
+    """Measure a calibration at a rate (Hz) and reference pitch (Hz) by bowing the model.
 
-    `rate`: sample rate (Hz).
-    `a4`: reference pitch (Hz).
-    `bowing` (ndarray, optional): how notes are bowed; by default as practised for the nearest of
-    the usual rates.
-    `progress`: called with the number of notes done and of all notes.
-
-    Raises ParameterError where the strings are no two that a fiddle has.
+    `bowing`: by default as practised for the nearest of the usual rates. `progress`: called with
+    the number of notes done and of all. Raises ParameterError where the strings are no two that a
+    fiddle has.
     """
     bowing = shipped_bowing_table(rate) if bowing is None else bowing
     open_notes = notes_of(quantities).open_notes

@@ -1,10 +1,4 @@
-"""Find the calibration of an instrument: shipped, cached on disk, or measured now.
-
-The package ships those of the usual sample rates; others are measured once and cached in
-files with a checksum.
-"""
-
-from __future__ import annotations
+"""Find an instrument's calibration: shipped, cached in a checksummed file, or measured."""
 
 import json
 import logging
@@ -29,15 +23,7 @@ from yehu_server.core.player.note_tables import (
     Tables,
 )
 from yehu_server.errors import ParameterError
-from yehu_server.playing.calibration import (
-    PLAUSIBLE_CENTS,
-    ROUNDS,
-    USUAL_CENTS,
-    Progress,
-    calibrate,
-    calibration_key,
-    starting_tension,
-)
+from yehu_server.playing import calibration
 from yehu_server.playing.pitch_and_level import cents
 from yehu_server.util.checksummed import ChecksumError, read_checksummed, write_checksummed
 from yehu_server.util.files import error_reason, read_text
@@ -47,8 +33,8 @@ log = logging.getLogger(__name__)
 
 SHIPPED = Path(__file__).parent / "calibrations.json"
 # Bounds of what the rounds of a calibration can reach.
-MAX_CENTS = ROUNDS * PLAUSIBLE_CENTS
-MAX_SHARPENING_CENTS = max(USUAL_CENTS) + len(SPEEDS) * MAX_CENTS
+MAX_CENTS = calibration.ROUNDS * calibration.PLAUSIBLE_CENTS
+MAX_SHARPENING_CENTS = max(calibration.USUAL_CENTS) + len(SPEEDS) * MAX_CENTS
 MAX_LEVEL_DB = 200.0
 MAX_CENTROID_HZ, MAX_LOUDER_DB = 1e5, 40.0
 MIN_N, MAX_N = 1.0, 500.0
@@ -64,24 +50,20 @@ def calibration_for(
     *,
     a4: float = 440.0,
     bowing: Any = None,
-    progress: Progress | None = None,
+    progress: calibration.Progress | None = None,
 ) -> NoteTables:
-    """Find the calibration of an instrument, or measure it, in some seconds.
-
-    `rate`: sample rate (Hz).
-    `a4`: reference pitch (Hz).
-    `bowing` (ndarray, optional): how notes are bowed; by default as shipped.
-    `progress`: called with the number of notes done and of all notes, where it is measured.
-    """
+    """Find the calibration of an instrument, or measure it in some seconds; see `calibrate`."""
     quantities = quantities or Quantities()
-    key = calibration_key(float(rate), quantities, float(a4), bowing)  # 48000 is 48000.0
+    key = calibration.calibration_key(
+        float(rate), quantities, float(a4), bowing
+    )  # 48000 is 48000.0
     if key in _shipped():
         return read_calibration(_shipped()[key], quantities, a4)
     # Another level rounds otherwise, so another's calibration is not what is measured here.
     path = data_folder() / f"calibration-{levels.level()}-{key}.json"
     found = _kept(path, quantities, a4) or _unkept.get(key)
     if found is None:
-        found = calibrate(rate, quantities, a4=a4, bowing=bowing, progress=progress)
+        found = calibration.calibrate(rate, quantities, a4=a4, bowing=bowing, progress=progress)
         try:
             write_checksummed(path, json.dumps(asdict(found)).encode())
         except OSError as error:
@@ -102,7 +84,7 @@ def read_calibration(data: Any, quantities: Quantities, a4: float) -> NoteTables
     if found.a4 != a4:
         raise ParameterError(f"is for another A4, {found.a4:g} Hz")
     for i, tension in enumerate(found.tensions):
-        usual = starting_tension(quantities, a4, i)
+        usual = calibration.starting_tension(quantities, a4, i)
         off = cents(tension, usual) / 2.0 if tension > 0.0 else math.inf
         if not abs(off) <= MAX_CENTS:
             raise ParameterError(f"has a tension of {tension:g} N where {usual:.3g} is usual")

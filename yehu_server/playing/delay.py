@@ -1,7 +1,5 @@
 """The delay from arrival of a message to its sound, constant so that messages keep their rhythm."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable

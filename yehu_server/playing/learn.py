@@ -1,7 +1,5 @@
 """MIDI learn: detect which source the user moves, and keep its bind in a mapping file."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
@@ -140,10 +138,7 @@ class Learning:
         return self._found is not None
 
     def listen(self, found: Callable[[LearnedSource], None] | None) -> None:
-        """Call `found` once with the source that the user moves next; with None, stop listening.
-
-        It is called from any thread, and must not block.
-        """
+        """Call `found`, which must not block, once with the source moved next; None: stop."""
         with self._lock:
             self._learner, self._found = Learner(), found
         self.on_change()
@@ -304,12 +299,7 @@ def _is_learned(bind: Bind) -> bool:
 def _is_plain(bind: Bind) -> bool:
     """Whether it is as `learn` makes it: its control can be moved again, nothing else is lost."""
     return _is_learned(bind) and bind == replace(
-        bind,
-        curve=find(bind.target).curve,
-        span=None,
-        invert=False,
-        smoothing_ms=0.0,
-        channels=(),
+        bind, curve=find(bind.target).curve, span=None, invert=False, smoothing_ms=0.0, channels=()
     )
 
 

@@ -7,8 +7,6 @@ MIDI learn keeps its binds there.
 The format of the files is described in mappings/README.md.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -144,10 +142,7 @@ def _check_size(path: Path, mapping: Mapping) -> None:
 
 
 def _merged(below: Mapping, layer: MappingFile) -> Mapping:
-    """A mapping overridden by a file: its binds replace those of the same controller.
-
-    An exclusive bind also replaces all others of its target.
-    """
+    """A mapping overridden by a file's binds of the same controller, or target if exclusive."""
     overridden = {override_key(bind) for bind in layer.binds}
     exclusive = {bind.target for bind in layer.binds if bind.is_exclusive}
     remaining = [

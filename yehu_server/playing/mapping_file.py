@@ -1,9 +1,4 @@
-"""Read one mapping file: its contents, or all errors in it with their lines.
-
-The format is described in mappings/README.md.
-"""
-
-from __future__ import annotations
+"""Read one mapping file (mappings/README.md), or all errors in it with their lines."""
 
 import itertools
 import math

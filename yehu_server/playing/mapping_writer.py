@@ -1,7 +1,5 @@
 """Write mapping files in canonical form, keeping the comments of an older text."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -14,12 +14,7 @@ from yehu_server.core.physics.default_quantities import Quantities, read_quantit
 from yehu_server.core.player.fingering import OpenStrings
 from yehu_server.core.player.note_tables import NoteTables
 from yehu_server.core.player.velocity import NEUTRAL_VELOCITY
-from yehu_server.playing.bowing_tables import (
-    ENDING,
-    bowing_table_beside,
-    read_bowing_table,
-    shipped_bowing_table,
-)
+from yehu_server.playing import bowing_tables
 from yehu_server.playing.calibration import Progress
 from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, Mapping, load
@@ -83,10 +78,10 @@ class PlayingOptions:
         if file is not None:
             found = read_quantities(file)
             playing = replace(self, quantities=found, instrument=file, bowing=None, practice=None)
-        practice = practice or bowing_table_beside(file)
+        practice = practice or bowing_tables.bowing_table_beside(file)
         if practice is None:
             return playing
-        return replace(playing, bowing=read_bowing_table(practice), practice=practice)
+        return replace(playing, bowing=bowing_tables.read_bowing_table(practice), practice=practice)
 
     def with_preset(self, name: str) -> PlayingOptions:
         """The same options with the sound of a preset; raises YehuError where it is none."""
@@ -110,7 +105,7 @@ class PlayingOptions:
     @property
     def files(self) -> tuple[Path, ...]:
         """All files that it was read from, and where a bowing table was searched for."""
-        beside = self.instrument and self.instrument.with_suffix(ENDING)
+        beside = self.instrument and self.instrument.with_suffix(bowing_tables.ENDING)
         named = filter(None, (self.preset, self.practice, self.instrument, beside))
         return (*self.mapping.files, *named, *self.tuning.files)
 
@@ -123,16 +118,13 @@ class PlayingOptions:
         body: int = 0,
         player_number: int = 0,
     ) -> InstrumentSpec:
-        """The instrument at a rate (Hz), calibrated, with a player with these options.
-
-        `start_values`, `body`, `player_number`: see `InstrumentSpec`.
-        """
+        """The calibrated instrument at a rate (Hz) with this player; as of `InstrumentSpec`."""
         return InstrumentSpec(
             rate,
             calibration.tuned(self.quantities),
             calibration=calibration,
             open_strings=self.open_strings,
-            bowing=shipped_bowing_table(rate) if self.bowing is None else self.bowing,
+            bowing=bowing_tables.shipped_bowing_table(rate) if self.bowing is None else self.bowing,
             seed=self.seed,
             start_values=start_values or {},
             body=body,

@@ -42,10 +42,7 @@ ELSEWHERE = -1  # the channel of notes that do not come from MIDI
 
 @dataclass(frozen=True)
 class Key:
-    """Identifies a held note by its channel and key.
-
-    `channel` is any number that distinguishes sources; `note` may be fractional.
-    """
+    """A held note by its channel, a number for each source, and key, which may be fractional."""
 
     channel: int
     note: float
@@ -257,10 +254,7 @@ class PartState:
         return found
 
     def sound(self) -> dict[str, float]:
-        """The parameters that a preset keeps: all of the part that the player does not move.
-
-        They are without the velocity of one note.
-        """
+        """What a preset keeps: parameters that the player does not move, but a note's velocity."""
         free = [
             param
             for param in TABLE

@@ -4,8 +4,6 @@ The first of a section has the measured instrument; those of the others differ a
 maker do.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -51,10 +49,7 @@ def section_size(playing: PlayingOptions) -> int:
 def part_specs(
     playing: PlayingOptions, rate: float, calibration: NoteTables, *, number: int
 ) -> list[InstrumentSpec]:
-    """The instruments of a part: one, or those of a section; see `section_specs`.
-
-    `number`: how many others are on the stage already.
-    """
+    """The instruments of a part, alone or a section's, after `number` others on the stage."""
     players = section_size(playing)
     if players > 1:
         return section_specs(playing, rate, calibration, players=players)
@@ -178,10 +173,7 @@ def assemble(
     is_live: bool = True,
     **stage: Any,
 ) -> tuple[Ensemble, list[Sequence[Instrument]]]:
-    """Make the instruments of all parts, on a `stage` (see `Ensemble`); return them by part, too.
-
-    `tuned` has the calibration of each part's instrument.
-    """
+    """All parts' instruments on a `stage` (see `Ensemble`), and by part; `tuned`: calibrations."""
     specs: list[InstrumentSpec] = []
     ends = [0]
     for playing, calibration in zip(per_part, tuned, strict=True):
@@ -194,9 +186,6 @@ def assemble(
 def player_of(
     part: int, playing: PlayingOptions, instruments: Sequence[Instrument], *, delay_ms: float
 ) -> Player:
-    """The player of a part, counted from 0, on all of its instruments.
-
-    `delay_ms`: from the arrival of a message to its sound.
-    """
+    """The player of a part, from 0, on all its instruments, `delay_ms` from message to sound."""
     instruments[0].delay = instruments[0].frames(delay_ms)
     return playing.mapped(playing.player(instruments, part))

@@ -4,8 +4,6 @@ Source: [McLeod], the normalised square difference. Its peak is refined at ever 
 where an error of the lag is a smaller error of the pitch.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -3,8 +3,6 @@
 What they come to is decided in compiled code (``midi``, ``player``), at their frames.
 """
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Collection, Iterable, Sequence
 from collections.abc import Mapping as Values
@@ -90,10 +88,9 @@ class Player(PartState):
     ) -> Self:
         """Play by a mapping from the beginning on; return itself.
 
-        `channels`: channels to receive, counted from 0; by default all. Notes of the percussion
-        channel are played only if it is chosen, or a member of an MPE zone.
-        `start` (iterable of (address, value)): start values of parameters, over the mapping's.
-        `programs`: the presets of MIDI programs, from 1. Without it program changes are ignored.
+        `channels` (from 0): those received; by default all, percussion only if it is chosen or a
+        member of an MPE zone. `start`: addresses and values, over the mapping's. `programs`:
+        presets of MIDI programs, from 1; by default program changes are ignored.
         """
         self.mapping, self._channels = mapping, channels
         self._start, self._programs = tuple(start), programs
@@ -159,10 +156,9 @@ class Player(PartState):
     ) -> float:
         """Set any parameter of the table; return the value it then has.
 
-        The moves of bow and fingers that follow take at least `glide_ms`. Raises ParameterError
-        where the address is unknown or the value is not finite.
-
-        `kind`: of the event: a plain write, or one that counts as a move of a controller.
+        The moves of bow and fingers that follow take at least `glide_ms`; `kind` is a plain write,
+        or counts as a move of a controller. Raises ParameterError where the address is unknown or
+        the value is not finite.
         """
         param = find(address)
         accepted = param.clamped(value)
@@ -261,10 +257,7 @@ class Player(PartState):
         self.post(events.RELEASE_ALL, frame)
 
     def stop_sound(self, *, frame: int | None = None, is_panic: bool = False) -> None:
-        """Lift bow and fingers and stop the sound at once, unless a note sounds.
-
-        In a panic also what sounds ends.
-        """
+        """Lift bow and fingers and stop the sound, unless a note sounds; in a panic, all."""
         self.post(commands.STOP, frame, value=float(is_panic))
 
     def end_notes(self, *, frame: int) -> None:
@@ -320,10 +313,7 @@ class Player(PartState):
     def receive(
         self, message: mido.Message | Sequence[int], *, frame: int | None = None, port: int = 0
     ) -> None:
-        """Send a channel message or a system reset, or its bytes; others change nothing.
-
-        Each port, counted from 0, has 16 channels of its own.
-        """
+        """Send a channel message or a system reset, or its bytes, of a port (16 channels each)."""
         data = message.bytes() if isinstance(message, BaseMessage) else message
         self.post(events.MESSAGE, frame, packed(data, port))
 

@@ -1,7 +1,5 @@
 """Find, read, save and delete presets: shipped ones, and the user's own."""
 
-from __future__ import annotations
-
 import os
 import stat
 from collections.abc import Mapping, Sequence

@@ -1,9 +1,4 @@
-"""The names of sources: MIDI controllers, properties of a note, OSC addresses of the user's own.
-
-Each source has one canonical name, by which its binds are found (``mapping.Mapping.of``).
-"""
-
-from __future__ import annotations
+"""Sources by their canonical names: MIDI controllers, properties of a note, OSC addresses."""
 
 import re
 

@@ -5,8 +5,6 @@ little. The player has one pair of hands for all: where a string is tuned elsewh
 note is stopped and bowed as the note of the yehu that lies as far above the open string.
 """
 
-from __future__ import annotations
-
 from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.note_range import NoteRange
@@ -20,10 +18,7 @@ FARTHEST_APART = 12  # semitones between the strings
 
 
 def notes_of(quantities: Quantities) -> NoteRange:
-    """The notes of a fiddle that is to be tuned.
-
-    Raises ParameterError where its strings are no two that a fiddle has.
-    """
+    """The notes of a fiddle to be tuned; raises ParameterError for strings that no fiddle has."""
     usual = Quantities()
     first, second = (
         12.0 * log2(_hertz(quantities, string) / _hertz(usual, string)) for string in (0, 1)

@@ -1,7 +1,5 @@
 """Converts mapping, tuning and presets to tables for compiled code (``midi.tables``)."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Iterable, Mapping

@@ -4,8 +4,6 @@ A scale (``.scl``) lists intervals above its first note, 1/1; a keyboard map (``
 them to keys and gives the frequency of a reference key.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from contextlib import suppress
@@ -197,10 +195,7 @@ class _Keyboard:
 
 
 def _interval(degree: int, notes: tuple[float, ...]) -> float | None:
-    """Semitones from 1/1 to a degree; the last note of a scale is the 1/1 of the next octave.
-
-    A scale without notes has only degree 0.
-    """
+    """Semitones from 1/1 to a degree; the last note of a scale is 1/1 of the next octave."""
     if not notes:
         return 0.0 if degree == 0 else None
     octaves, index = divmod(degree, len(notes))

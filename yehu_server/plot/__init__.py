@@ -5,8 +5,6 @@ Each function draws into the matplotlib axes `ax`, by default the current ones, 
 It needs matplotlib: ``pip install yehu-server[plots]``.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 

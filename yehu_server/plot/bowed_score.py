@@ -5,8 +5,6 @@ brace joins the notes of one stroke; of a stroke that comes to the bow's end bot
 at its beginning.
 """
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import replace

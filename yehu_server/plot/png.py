@@ -1,21 +1,12 @@
 """PNG files of pictures: whether they may be written, and the same bytes for the same picture."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from yehu_server.errors import OutputError, one_line
-from yehu_server.util.files import (
-    check_free,
-    check_target,
-    error_reason,
-    open_regular,
-    replace_any,
-    replacing,
-)
+from yehu_server.util import files
 from yehu_server.util.hints import require_package
 
 SOFTWARE = "yehu-server"  # named in a picture, which may therefore be replaced
@@ -33,14 +24,14 @@ def check_picture(target: Path, what: str, *, overwrite: bool = False) -> None:
     require_package("matplotlib", what, "plots")
     if target.suffix.lower() != ".png":
         raise OutputError(f"{target}: a picture is a .png file")
-    check_target(target)
-    check_free(target, replace_any if overwrite else is_ours)
+    files.check_target(target)
+    files.check_free(target, files.replace_any if overwrite else is_ours)
 
 
 def is_ours(target: Path) -> bool:
     """Whether a file is a picture that `write_picture` made, or is empty."""
     try:
-        with open_regular(target) as file:
+        with files.open_regular(target) as file:
             data = file.read(BEGINNING)
     except OSError:
         return False
@@ -48,11 +39,7 @@ def is_ours(target: Path) -> bool:
 
 
 def write_picture(
-    target: Path,
-    size: tuple[float, float],
-    fill: Callable[[Any], None],
-    *,
-    overwrite: bool = False,
+    target: Path, size: tuple[float, float], fill: Callable[[Any], None], *, overwrite: bool = False
 ) -> None:
     """Draw a picture and write it to a PNG file. The same picture has the same bytes.
 
@@ -71,11 +58,11 @@ def write_picture(
         FigureCanvasAgg(figure)
         fill(figure)
         figure.savefig(data, format="png", metadata={"Software": SOFTWARE})
-    with replacing(target, replace_any if overwrite else is_ours) as partial:
+    with files.replacing(target, files.replace_any if overwrite else is_ours) as partial:
         try:
             partial.write_bytes(data.getvalue())
         except OSError as error:
-            raise OutputError(f"{target}: cannot write: {error_reason(error)}") from error
+            raise OutputError(f"{target}: cannot write: {files.error_reason(error)}") from error
 
 
 def plain(text: str, most: int = MAX_TEXT) -> str:

@@ -1,7 +1,5 @@
 """The picture of a rendering: its level, pitch and spectrogram."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial

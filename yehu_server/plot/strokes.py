@@ -5,8 +5,6 @@ other way where a note needs more hair than is left, and turns it within a long 
 joins short plain notes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
@@ -48,10 +46,7 @@ class Stroke:
 
 
 def strokes_of(
-    written: Written,
-    number: int,
-    quantities: Quantities | None = None,
-    phrasing: float = PHRASING,
+    written: Written, number: int, quantities: Quantities | None = None, phrasing: float = PHRASING
 ) -> list[Stroke]:
     """Return the strokes of a part, counted from 0, that is in range, as `render` has them."""
     quantities = quantities or Quantities()

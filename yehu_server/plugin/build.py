@@ -1,7 +1,5 @@
 """Build the plug-in: one file or folder for each format, and expression maps."""
 
-from __future__ import annotations
-
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence

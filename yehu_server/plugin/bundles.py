@@ -1,7 +1,5 @@
 """Arrange linked libraries as each format and system wants them."""
 
-from __future__ import annotations
-
 import plistlib
 import shutil
 import struct

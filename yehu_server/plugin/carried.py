@@ -1,7 +1,5 @@
 """What a plug-in carries: presets, mappings and tunings, as the instrument reads them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

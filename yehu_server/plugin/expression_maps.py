@@ -1,9 +1,4 @@
-"""Write expression maps: files by which notation programs choose articulations by their keys.
-
-The formats have no description: the elements are those of maps that Cubase and Dorico write.
-"""
-
-from __future__ import annotations
+"""Write expression maps (keys of articulations) as Cubase and Dorico do; no format is described."""
 
 from collections.abc import Iterator
 from itertools import count

@@ -1,7 +1,5 @@
 """Write the C++ header of a plug-in: its parameters, and what it carries."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

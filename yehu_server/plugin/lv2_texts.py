@@ -1,7 +1,5 @@
 """Write what an LV2 bundle declares, in Turtle: ports, parameters, presets."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Sequence
 

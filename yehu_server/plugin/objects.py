@@ -4,8 +4,6 @@
 target into a folder, and the header of its functions.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from pathlib import Path

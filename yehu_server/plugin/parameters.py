@@ -4,8 +4,6 @@ A host keeps automation and state by a parameter's number, so numbers are for ev
 the address, which a parameter keeps as long as it is there (a test holds the numbers).
 """
 
-from __future__ import annotations
-
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass

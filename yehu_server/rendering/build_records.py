@@ -5,8 +5,6 @@ A record holds a key of all that the result depends on, hashes of the files it w
 what may be reported of it again.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json
@@ -19,15 +17,7 @@ from typing import Any
 from yehu_server.errors import OutputError
 from yehu_server.system.files import open_at_once
 from yehu_server.system.locks import lock
-from yehu_server.util.files import (
-    MAX_LINE_BYTES,
-    error_reason,
-    make_folder,
-    open_regular,
-    read_lines,
-    read_text,
-    write_text,
-)
+from yehu_server.util import files
 
 NAME = "manifest.jsonl"
 MAX_BYTES = 2**30
@@ -49,7 +39,7 @@ def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
         raise ValueError("a line about something else")
     if not isinstance(line.get("error", ""), str):
         raise TypeError("an error without text")
-    if len(json.dumps(line)) >= MAX_LINE_BYTES:  # nor of bytes
+    if len(json.dumps(line)) >= files.MAX_LINE_BYTES:  # nor of bytes
         raise ValueError("a line that no manifest may have")
     return line
 
@@ -57,14 +47,14 @@ def checked_line(line: Any, **wanted: object) -> dict[str, Any]:
 def write_manifest(folder: Path, lines: Iterable[Mapping[str, Any]], order: str = "file") -> None:
     """Write the manifest, in the order of the names or another entry; raises OutputError."""
     ordered = sorted(lines, key=lambda line: line[order])
-    write_text(folder / NAME, "".join(f"{json.dumps(line)}\n" for line in ordered))
+    files.write_text(folder / NAME, "".join(f"{json.dumps(line)}\n" for line in ordered))
 
 
 def check_manifest(folder: Path) -> None:
     """Check that the manifest may be written. Raises OutputError where the file is another's."""
     path = folder / NAME
     try:
-        first = next(read_lines(path, MAX_BYTES), "")
+        first = next(files.read_lines(path, MAX_BYTES), "")
         fields = json.loads(first) if first else {"file": ""}
         if "file" in fields and isinstance(fields, dict):
             return
@@ -79,7 +69,7 @@ def hash_of(path: Path) -> str:
     """Hash of a file's bytes (SHA-256, hexadecimal); empty where it cannot be read."""
     digest = hashlib.sha256()
     try:
-        with open_regular(path) as file:
+        with files.open_regular(path) as file:
             while data := file.read(CHUNK):
                 digest.update(data)
     except OSError:
@@ -106,7 +96,7 @@ def record_of(target: Path) -> Path:
 
 def make_folder_for(target: Path) -> None:
     """Make the folders of a result. Raises OutputError where they cannot be made."""
-    make_folder(target.parent / HIDDEN)
+    files.make_folder(target.parent / HIDDEN)
 
 
 def keep(
@@ -124,18 +114,15 @@ def keep(
         made[_beside(target, path)] = facts
     inputs = {str(path.absolute()): hash_of(path) for path in read}
     record = {"key": key, "read": inputs, "results": made, "line": line}
-    write_text(record_of(target), json.dumps(record) + "\n")
+    files.write_text(record_of(target), json.dumps(record) + "\n")
 
 
 def up_to_date(
     target: Path, key: str, results: Iterable[Path], hashing: Callable[[Path], str] = hash_of
 ) -> Record | None:
-    """Return the manifest line of a result that is up to date; None if there is none.
-
-    `results` are the target, and what is wanted beside it.
-    """
+    """The manifest line of a target whose results are up to date; None where there is none."""
     try:
-        record = json.loads(read_text(record_of(target), MAX_RECORD_BYTES))
+        record = json.loads(files.read_text(record_of(target), MAX_RECORD_BYTES))
         line: Record = record["line"]
         made = record["results"]
         wanted = {_beside(target, path): path for path in results}
@@ -181,7 +168,7 @@ def alone_in(folder: Path) -> Iterator[None]:
         path.parent.mkdir(parents=True, exist_ok=True)
         file = open(path, "w", opener=open_at_once)  # noqa: SIM115 - closed below
     except OSError as error:
-        raise OutputError(f"{folder}: cannot write: {error_reason(error)}") from error
+        raise OutputError(f"{folder}: cannot write: {files.error_reason(error)}") from error
     with file:
         try:
             lock(file.fileno())

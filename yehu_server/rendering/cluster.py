@@ -1,10 +1,4 @@
-"""Do jobs on a cluster of machines, by Dask: the same jobs, with the same results.
-
-A job whose worker dies is given to another one, by Dask's scheduler. docs/cluster.md describes how
-to start a cluster.
-"""
-
-from __future__ import annotations
+"""Do jobs on a cluster by Dask (docs/cluster.md), with the same results; also if workers die."""
 
 import contextlib
 import itertools
@@ -40,10 +34,7 @@ BATCHES = 4  # in which they are sent off
 
 
 def scheduler_address(text: str) -> str:
-    """Complete an address: ``HOST``, ``HOST:PORT``, ``tls://HOST:PORT``, or a scheduler's file.
-
-    Raises YehuError where it is none.
-    """
+    """Complete HOST, HOST:PORT, tls://HOST:PORT or a scheduler's file, or raise YehuError."""
     if text.endswith(".json"):
         return _in_file(Path(text))
     found = _ADDRESS.fullmatch(text)
@@ -105,11 +96,10 @@ class Cluster:
     def perform_all(self, perform: Perform, tasks: Iterable[Any]) -> Generator[Event]:
         """Do all tasks; yield what becomes of them, in the order in which they end.
 
-        `perform` is as of ``rendering.workers.perform_all``, but its progress is lost; tasks are
-        taken one by one, as workers are free. Results are plain values: None, numbers, texts,
-        bytes, and lists and dicts of them. Whoever takes one checks it: anybody who reaches the
-        scheduler may have sent it. Raises YehuError where the scheduler is lost, or a worker has
-        another version.
+        As of ``rendering.workers.perform_all``, but progress is lost. Results are plain values:
+        None, numbers, texts, bytes, and lists and dicts of them. Whoever takes one checks it:
+        anybody who reaches the scheduler may have sent it. Raises YehuError where the scheduler is
+        lost, or a worker has another version.
         """
         name = f"yehu-{secrets.token_hex(8)}"
         waiting = enumerate(tasks)

@@ -1,9 +1,4 @@
-"""What a worker of a cluster does: its part of a job, and who it is.
-
-Nothing heavy is imported here: the scheduler loads it too.
-"""
-
-from __future__ import annotations
+"""A worker's part of a job, and who it is; light, as the scheduler loads it too."""
 
 import pickle
 import platform

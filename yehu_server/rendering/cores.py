@@ -4,8 +4,6 @@ The samples are those of the callback, which computes the instruments in turn, w
 of cores.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager

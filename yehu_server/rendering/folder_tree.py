@@ -1,9 +1,4 @@
-"""Which scores a folder has, and the file that each is rendered to.
-
-The tree is kept: ``songs/a.mid`` becomes ``songs/a.wav``.
-"""
-
-from __future__ import annotations
+"""Which scores a folder has, and where each is rendered to: songs/a.mid to songs/a.wav."""
 
 import os
 from collections.abc import Iterator

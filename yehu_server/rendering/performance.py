@@ -1,7 +1,5 @@
 """A performance: instruments on a stage play the events of their parts, block by block."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -11,7 +9,7 @@ import numpy as np
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.rig import RIG
 from yehu_server.core.player.commands import EXPRESS
-from yehu_server.core.player.parameter_indices import BEND, INDEX
+from yehu_server.core.player.parameter_indices import INDEX, PLAYING
 from yehu_server.params.table import find
 from yehu_server.playing.parts import assemble, number_of_instruments
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
@@ -215,4 +213,4 @@ def _target_pitch(instrument: Instrument) -> float | None:
     sounding = int(player["sounding"])
     if sounding < 0:
         return None
-    return float(player["held_pitch"][sounding] + player["value"][BEND])
+    return float(player["held_pitch"][sounding] + player["value"][PLAYING.bend])

@@ -5,8 +5,6 @@ WAV stream are the largest there are, by which other programs know that it ends 
 samples have no header; all channels of a frame follow each other, little endian.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import struct
@@ -50,10 +48,7 @@ class _Stream:
 
 
 class PipeWriter(SoundWriter):
-    """Writes sound to a pipe, of any length.
-
-    Raises BrokenPipeError where the reader has gone; OutputError where writing fails otherwise.
-    """
+    """Writes sound to a pipe; raises BrokenPipeError where nobody reads, else OutputError."""
 
     def __init__(  # the file's own has a limit, and a header that it writes again
         self, file: io.FileIO, rate: int, format_name: str, subtype: str, channels: int
@@ -83,10 +78,7 @@ class PipeWriter(SoundWriter):
 
 
 def check_pipe(format_name: str) -> None:
-    """Check that sound of a format may go to standard output.
-
-    Raises OutputError where it is a terminal, or the format needs a file.
-    """
+    """Raise OutputError where standard output is a terminal, or the format needs a file."""
     if format_name not in FORMATS:
         raise OutputError(f"a {format_name} file cannot be piped; use --format wav or raw")
     if sys.stdout is not None and sys.stdout.isatty():

@@ -3,8 +3,6 @@
 Whoever reaches a scheduler may have it send any bytes to all clients, and Dask unpickles them.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import pickle
@@ -40,10 +38,7 @@ def _brief(value: object) -> object:
 
 
 def plain(data: Any, *, buffers: Any = ()) -> Any:
-    """Unpickle numbers, texts, bytes, and lists, tuples, dicts of them; the rest as ForeignError.
-
-    Raises any exception where the bytes are damaged.
-    """
+    """Unpickle numbers, texts, bytes and lists, tuples, dicts of them; others as ForeignError."""
     return _PlainUnpickler(io.BytesIO(data), buffers=buffers).load()
 
 

@@ -1,7 +1,5 @@
 """Gathers what a picture of a rendering shows, as it is rendered, in bounded memory."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

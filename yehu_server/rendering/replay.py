@@ -1,7 +1,5 @@
 """Render a captured session to a sound file: the same samples as when it was played."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterator

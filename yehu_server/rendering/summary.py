@@ -1,7 +1,5 @@
 """What a rendering was: its length and level, its notes, and what became of them."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Sequence

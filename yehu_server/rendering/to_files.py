@@ -1,7 +1,5 @@
 """Render parts: to sound files and stems, scaled to a true peak; or to a capture."""
 
-from __future__ import annotations
-
 import contextlib
 import tempfile
 import time
@@ -181,10 +179,7 @@ def render(
 
 
 def _takes(
-    performance: Performance,
-    files: int,
-    progress: ProgressCallback | None,
-    watch: PlotData | None,
+    performance: Performance, files: int, progress: ProgressCallback | None, watch: PlotData | None
 ) -> Iterator[list[Samples]]:
     """Yield what goes to each of the files, block by block."""
     for samples in performance.blocks(progress):

@@ -4,8 +4,6 @@ Processes begin anew (spawn). Each ends when its parent does, however that ends,
 it was making.
 """
 
-from __future__ import annotations
-
 import contextlib
 import multiprocessing
 import os

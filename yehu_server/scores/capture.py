@@ -4,8 +4,6 @@ Version 1 held what moved bow and fingers, not what the player was asked for. Ve
 one player.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field

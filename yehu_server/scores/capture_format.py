@@ -1,7 +1,5 @@
 """The lines of a capture: commands as JSON values, and back; docs/capture.md describes them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import llvmlite
@@ -61,10 +59,7 @@ def as_line(command: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one 
 
 
 def from_line(line: list[Any]) -> CommandRow:
-    """The fields of a command, from its JSON value without the player.
-
-    Raises ValueError, TypeError, KeyError where it is none, or a value is out of range.
-    """
+    """A command's fields, from its JSON value; raises ValueError, TypeError, KeyError."""
     frame, kind, values = frames_of(line[0]), NUMBERS[line[1]], line[2:]
     index, value, other = 0, 0.0, 0.0
     if kind == commands.RAMP:

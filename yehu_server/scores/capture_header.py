@@ -1,7 +1,5 @@
 """The first line of a capture: what the session starts from; docs/capture.md describes it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields, is_dataclass, replace
 from typing import Any

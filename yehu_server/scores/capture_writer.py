@@ -1,10 +1,4 @@
-"""Write captures of sessions: every command that the player applied, with its frame.
-
-docs/capture.md describes the format: one JSON value a line, so that a capture that was cut short
-by a crash can be read.
-"""
-
-from __future__ import annotations
+"""Write captures, every command applied and its frame, a JSON value a line (docs/capture.md)."""
 
 import contextlib
 import io

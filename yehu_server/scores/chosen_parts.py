@@ -1,7 +1,5 @@
 """Choose the parts of a score that are played: those asked for by name, else the default ones."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cache

@@ -7,8 +7,6 @@ kana, and KS X 1001 has the usual syllables. It is Cyrillic where its words have
 capitals first. What is left is Latin-1, whose accents come one by one, within words.
 """
 
-from __future__ import annotations
-
 import codecs
 import re
 from functools import lru_cache

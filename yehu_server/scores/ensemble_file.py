@@ -1,9 +1,4 @@
-"""Read an ensemble file: the players of a score's parts, their instruments and places on the stage.
-
-docs/ensemble.md describes the format.
-"""
-
-from __future__ import annotations
+"""Read an ensemble file: players of a score's parts and their places (docs/ensemble.md)."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Characters that are frequent in names and texts of music, by which short ones are judged."""
 
-from __future__ import annotations
-
 # Chinese, simplified and traditional, and Japanese: general words, then instruments and titles.
 HAN = frozenset(
     "的一是不了在人有我他这个们中来上大为和国地到以说时要就出会可也你对生能而子那得于着下自之年过发后作里"

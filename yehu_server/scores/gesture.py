@@ -1,7 +1,5 @@
 """Read gesture files: motion of bow and finger in physical units; see docs/simulate.md."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -65,8 +63,7 @@ _FINGER = ("finger_position", "press_force")
 # Of finger 2, `finger_position_2` and `press_force_2`; and so on.
 ALL_CONTROLS = CONTROLS | {
     f"{name}_{finger}": replace(
-        CONTROLS[name],
-        column=CONTROLS[name].column + layout.CONTROLS_PER_FINGER * (finger - 1),
+        CONTROLS[name], column=CONTROLS[name].column + layout.CONTROLS_PER_FINGER * (finger - 1)
     )
     for finger in range(2, layout.MAX_FINGERS + 1)
     for name in ("finger_position", "press_force")

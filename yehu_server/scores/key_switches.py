@@ -1,7 +1,5 @@
 """Read the keys of a MIDI file that a mapping takes as key switches: they play no notes."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import replace
 

@@ -1,9 +1,4 @@
-"""Write a performance as a MIDI file; of a written score, with its tempi and bars.
-
-Moves of bow and fingers become controllers of the mapping `keyboard`, as far as that has them.
-"""
-
-from __future__ import annotations
+"""Write a performance as a MIDI file, by controllers of the mapping `keyboard`."""
 
 import io
 from collections import Counter

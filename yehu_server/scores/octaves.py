@@ -5,8 +5,6 @@ are, a phrase may move otherwise, from rest to rest. What is outside still is le
 who moves each note by itself, as in live playing.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ controllers of loudness, notes that overlap. A page marks loudness in few places
 phrases are shaped, but less.
 """
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence

@@ -195,10 +195,7 @@ def _uncollected() -> Iterator[None]:
 
 
 def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
-    """Return the parts of a written score that are asked for, as they are played.
-
-    Raises ScoreError where there is no such part, or no note.
-    """
+    """The parts of a written score that are asked for, as played; raises ScoreError."""
     if options.parts:
         plays = chosen_parts.numbers_of(written.names, options.parts)
     elif options.all_parts:

@@ -5,8 +5,6 @@ the time that its ends take is regained in its middle. Arches of tempo: [Friberg
 [FribergSundberg]. Amounts are small, by ear.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections.abc import Sequence

@@ -182,10 +182,7 @@ class Score:
 
 
 def concatenate(scores: Sequence[Score]) -> Score:
-    """Join several scores, each beginning at the end of the one before.
-
-    A system reset between them ends all notes, pedals and bends.
-    """
+    """Join scores, one after another; a system reset between them ends notes, pedals and bends."""
     events: list[ScoreEvent] = []
     start = 0.0
     for number, score in enumerate(scores, start=1):
@@ -225,10 +222,7 @@ class ScoreNote(NamedTuple):
 
 
 def notes_of(score: Score) -> list[ScoreNote]:
-    """Pair the note-ons of a score with what ends them, in the order of their beginnings.
-
-    A key that is struck again ends its note, as the instrument has it.
-    """
+    """Note-ons with what ends them, as a key struck again does, in order of their beginnings."""
     return list(score.notes)
 
 

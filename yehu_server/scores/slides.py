@@ -6,8 +6,6 @@ second note begins where it is written, on its pitch; live a slide can only foll
 long each lasts, the seed says; without variation no seed changes it.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections import defaultdict
@@ -23,12 +21,7 @@ from yehu_server.core.physics.elementary import exp
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.gestures import BEARS_SLIDE, STEEP
 from yehu_server.core.player.note_range import NoteRange
-from yehu_server.core.player.phrasing import (
-    LONG_S,
-    MAX_LEAP,
-    MIN_LEAP,
-    USUAL_PHRASING,
-)
+from yehu_server.core.player.phrasing import LONG_S, MAX_LEAP, MIN_LEAP, USUAL_PHRASING
 from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
 from yehu_server.playing.options import PlayingOptions

@@ -5,8 +5,6 @@ one begins is written up to that. Notes that overlap are slurred, as they are pl
 becomes dynamics and accents where it is shaped at all.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -20,7 +18,7 @@ import numpy as np
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, STOP
-from yehu_server.core.player.parameter_indices import VELOCITY
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.errors import ScoreError
 from yehu_server.playing.sources import RESERVED
 from yehu_server.scores.capture import Capture, read_capture
@@ -74,10 +72,7 @@ class PlayedNote:
 def read_as_written(
     path: Path, song: int | None = None, tempo: float | None = None
 ) -> tuple[Written, dict[str, int]]:
-    """Read any score, MIDI file or capture as a written score, and what is left out of it.
-
-    Raises ScoreError, one line naming the file, where it cannot be read or has no note.
-    """
+    """Read a score, MIDI file or capture as written, and what is left out; raises ScoreError."""
     if is_capture(path):
         with errors_name(path):
             return written_of_capture(read_capture(path), tempo)
@@ -92,10 +87,7 @@ def read_as_written(
 
 
 def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, dict[str, int]]:
-    """Return a MIDI file as a written score, and what is left out of it, with counts.
-
-    `tempo` is that of a file that counts frames of a film (quarters a minute).
-    """
+    """A MIDI file as written, and counts of what is left out; `tempo` where it has only frames."""
     notes = notes_of(score)
     higher = transposed_keys(score)
     by_frames = any(math.isnan(note.beat) for note in notes)
@@ -158,7 +150,7 @@ def _of_commands(
     velocity = 0
     for frame, kind, index, value, other in commands:
         now, key = frame / rate, (index, value)
-        if kind == EXPRESS and index == VELOCITY:
+        if kind == EXPRESS and index == PLAYING.velocity:
             velocity = round(127.0 * value)
         for ended in list(held) if kind == STOP else [key] if kind in (BEGIN, END) else []:
             begin, pitch, loud = held.pop(ended, (now, 0.0, 0))

@@ -1,7 +1,5 @@
 """Find the part of a score that carries the tune, by its name and its notes."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Units and names of signals, and where they came from: for labelled data sets."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping

@@ -1,7 +1,4 @@
-"""Run the model with a gesture and keep every signal, to study the model.
-
-It uses the kernel that plays notes. docs/simulate.md describes the gesture file and the arrays.
-"""
+"""Run the model with a gesture (docs/simulate.md), by the kernel that plays; keep all signals."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 """List the surfaces, write them into a folder, and check whether files there are up to date."""
 
-from __future__ import annotations
-
 import zlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,9 +1,4 @@
-"""The Max patch: it opens in presentation mode; patching mode shows its cords.
-
-Dials send and take real values at their addresses.
-"""
-
-from __future__ import annotations
+"""The Max patch; its dials send and take real values at their addresses."""
 
 import json
 from collections.abc import Iterator, Sequence

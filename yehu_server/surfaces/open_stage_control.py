@@ -1,9 +1,4 @@
-"""The Open Stage Control session: the same pads, keys and faders, in a browser.
-
-Faders send and take real values at their addresses.
-"""
-
-from __future__ import annotations
+"""The Open Stage Control session: pads, keys and faders in a browser, of real values."""
 
 import json
 from typing import Any

@@ -1,7 +1,5 @@
 """An HTML page that documents every parameter and call; it loads nothing else."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from html import escape
 

@@ -1,7 +1,5 @@
 """Draw networks of boxes and cords from text, for the patches of Max and Pure Data."""
 
-from __future__ import annotations
-
 import re
 from abc import ABC, abstractmethod
 from typing import Generic, TypeVar

@@ -1,10 +1,7 @@
-"""The Pure Data patch, for Pd vanilla 0.51 or newer.
+"""The Pure Data patch, for Pd vanilla 0.51 or newer, with its network in a subpatch.
 
-Its network objects are in a subpatch. Each slider receives at its OSC address and sends at the
-same with `MOVED` after it; the server's values come back through the socket of the subscription.
+Each slider receives at its OSC address and sends at the same with `MOVED` after it.
 """
-
-from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import accumulate

@@ -5,8 +5,6 @@ layout subscribes to these by itself. Frames are in points of a 1024 by 768 scre
 TouchOSC fits to any other.
 """
 
-from __future__ import annotations
-
 import uuid
 import zlib
 from collections.abc import Iterator

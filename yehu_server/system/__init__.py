@@ -1,9 +1,4 @@
-"""What differs between Linux, macOS and Windows: clocks, memory, locks, processes, sockets, files.
-
-Each module has the forms of all systems side by side. No other module asks which system it is on.
-"""
-
-from __future__ import annotations
+"""What differs between systems: clocks, memory, locks, processes, sockets, files."""
 
 import sys
 

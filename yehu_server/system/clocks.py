@@ -1,7 +1,5 @@
 """The clocks that all processes of a machine share, in Python and for compiled code."""
 
-from __future__ import annotations
-
 import ctypes
 import sys
 import time

@@ -1,7 +1,5 @@
 """How files are opened, and whose they are."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import stat

@@ -1,7 +1,5 @@
 """Locks on files, which end with the process that holds them."""
 
-from __future__ import annotations
-
 import sys
 
 if sys.platform == "win32":

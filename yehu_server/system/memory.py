@@ -1,7 +1,5 @@
 """Memory that processes share: by a descriptor that a child inherits; on Windows by its name."""
 
-from __future__ import annotations
-
 import mmap
 import os
 import secrets

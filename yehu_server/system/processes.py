@@ -1,7 +1,5 @@
 """How processes start, inherit, take their turn and end."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import os

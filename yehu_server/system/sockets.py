@@ -1,7 +1,5 @@
 """Datagrams with the kernel's time stamps, and sockets that a child process serves."""
 
-from __future__ import annotations
-
 import base64
 import contextlib
 import socket

@@ -1,7 +1,5 @@
 """How a terminal completes words as somebody types."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 

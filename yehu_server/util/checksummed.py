@@ -1,9 +1,4 @@
-"""Read and write files with a checksum, so that damaged and incomplete ones are refused.
-
-They hold what can be computed again, such as compiled code and calibrations.
-"""
-
-from __future__ import annotations
+"""Read and write what can be computed again, with a checksum: no damaged file is taken."""
 
 import contextlib
 import hashlib
@@ -41,11 +36,7 @@ def read_checksummed(path: Path) -> bytes | None:
 
 
 def write_checksummed(path: Path, payload: bytes) -> None:
-    """Write or replace a file with its checksum, atomically.
-
-    A power cut may leave it incomplete, which its checksum shows. Raises OSError where it cannot be
-    written.
-    """
+    """Write a file with its checksum atomically; a power cut shows. Raises OSError."""
     partial = partial_beside(path)
     try:
         partial.write_bytes(_digest(path, payload) + payload)

@@ -1,7 +1,5 @@
 """Read files of bounded size; write results atomically, and replace only what may be replaced."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import io
@@ -106,10 +104,7 @@ def is_plain_name(name: str) -> bool:
 
 
 def path_inside(folder: Path, name: str, ending: str = "") -> Path:
-    """The path in a folder for a name that came over the network.
-
-    Raises OutputError where it is no plain name, or a symbolic link that leads out of the folder.
-    """
+    """A plain name's path in a folder; OutputError for other names, and links that lead out."""
     if not is_plain_name(name):
         shown = name if len(name) <= MAX_SHOWN else f"{name[:MAX_SHOWN]}..."
         raise OutputError(f"{shown!r} is not a plain name of letters, digits, . _ - and spaces")
@@ -144,13 +139,7 @@ def check_target(target: Path) -> None:
 
 
 def check_distinct(outputs: Mapping[str, Path], inputs: Iterable[Path] = ()) -> None:
-    """Check that outputs are different files from each other and from the inputs.
-
-    Raises OutputError where two are the same file, also by links.
-
-    `outputs`: the files to be written, by the options that name them.
-    `inputs`: the files to be read.
-    """
+    """Raise OutputError where outputs, by their options, or inputs are one file, also by links."""
     read = list(inputs)
     for (name, target), (other, another) in itertools.combinations(outputs.items(), 2):
         if is_same(target, another):

@@ -4,8 +4,6 @@ libFLAC encodes, but writes the number of samples into the header only at the en
 rewritten after every block of 4096 samples, so that a crash loses less than a tenth of a second.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 from typing import Any
@@ -28,10 +26,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
 class FlacStream:
-    """Writes a FLAC file of 1 to `MAX_CHANNELS` channels; see `wav_stream.WavStream`.
-
-    By the format, more than two channels belong to speakers around the listener.
-    """
+    """Writes FLAC of 1 to `MAX_CHANNELS` (more than two are around the listener); as WavStream."""
 
     def __init__(
         self, file: io.FileIO, rate: int, subtype: str, software: str = "", *, channels: int = 1

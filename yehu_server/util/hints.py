@@ -1,7 +1,5 @@
 """What hints name: the command as it was called, and how to get a library of an extra."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import shlex
@@ -21,12 +19,7 @@ def install_command(extra: str) -> str:
 
 
 def require_package(module: str, what: str, extra: str) -> None:
-    """Check that a library is there.
-
-    Raises ParameterError where it is missing, which names the extra that brings it.
-
-    `what`: what needs it, for the message.
-    """
+    """Raise a ParameterError that names the extra where a library is missing that `what` needs."""
     try:
         importlib.import_module(module)
     except ImportError:

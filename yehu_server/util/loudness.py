@@ -1,7 +1,5 @@
 """A-weighting: how loud a sound of each frequency is heard."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Reads arrays from npz files of anybody: at once, and no more than such a file may hold."""
 
-from __future__ import annotations
-
 import os
 import zipfile
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Parse TOML and JSON, and refuse what is not safe to process or print."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

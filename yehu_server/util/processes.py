@@ -5,8 +5,6 @@ process of its own and exchanges lines of JSON: orders in, events out. The proce
 input does, so none outlives its parent.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import logging

@@ -4,8 +4,6 @@ When files, memory or threads run short, anything may fail for a moment. A threa
 would be missing for the rest of the session.
 """
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import threading

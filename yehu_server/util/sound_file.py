@@ -1,9 +1,4 @@
-"""Write sound files: renderings that appear when complete, recordings that are always valid.
-
-And open the ones that others made.
-"""
-
-from __future__ import annotations
+"""Write sound files, whole when they appear or valid throughout; open those of others."""
 
 import contextlib
 import io

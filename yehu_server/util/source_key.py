@@ -1,7 +1,5 @@
 """Hash source code without its comments and docstrings, so that the hash changes with the code."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Formats of samples in sound files, by the names that users give them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

@@ -1,7 +1,5 @@
 """Limit how often something may be done: a token bucket."""
 
-from __future__ import annotations
-
 import math
 
 

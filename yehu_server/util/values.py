@@ -1,7 +1,5 @@
 """Check values in documents. All raise ParameterError for a wrong one, without its place."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection
 from typing import Any

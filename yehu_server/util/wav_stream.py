@@ -6,8 +6,6 @@ need the format of 2001 (``WAVE_FORMAT_EXTENSIBLE``). There is no time stamp, so
 samples give the same bytes.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import struct

@@ -11,7 +11,7 @@ from yehu_server.core.engine.instrument import Instrument
 from yehu_server.core.engine.sleep import QUIET, WINDOW
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.player.commands import BEGIN, END, HOLD, WRITE
-from yehu_server.core.player.parameter_indices import EXPRESSION, INDEX, TREMOLO
+from yehu_server.core.player.parameter_indices import INDEX, PLAYING
 from yehu_server.core.stage.seat import HISTORY_FRAMES
 
 RATE = 44100.0
@@ -195,12 +195,12 @@ def move_the_bow_in_the_air(one: Instrument) -> None:
 
 
 def hold_a_key_in_silence(one: Instrument) -> None:
-    one.post(WRITE, index=EXPRESSION, value=0.0)
+    one.post(WRITE, index=PLAYING.expression, value=0.0)
     one.post(BEGIN, value=69.0, other=69.0)
 
 
 def play_a_tremolo(one: Instrument) -> None:
-    one.post(WRITE, index=TREMOLO, value=8.0)
+    one.post(WRITE, index=PLAYING.tremolo, value=8.0)
     one.post(BEGIN, value=69.0, other=69.0)
 
 

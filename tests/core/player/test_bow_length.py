@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.core.controls.slots import SHARE
-from yehu_server.core.controls.slots import SPEED as SLOT_OF_SPEED
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.player.bow_length import END_FRACTION, MIN_SPEED_FACTOR
 
 LENGTH, SPEED = 0.7, 0.2
@@ -14,7 +13,7 @@ LENGTH, SPEED = 0.7, 0.2
 def drawn(playing: Playing, seconds: float) -> tuple[np.ndarray, np.ndarray]:
     """The bow's speed (m/s) and the hair's place (m), every 5 ms."""
     values, place = playing.play(seconds, "value", "bow_displacement")
-    return values[:, SLOT_OF_SPEED], place
+    return values[:, SLOTS.bow_speed], place
 
 
 def turns(speed: np.ndarray) -> np.ndarray:
@@ -112,6 +111,6 @@ def test_a_stroke_on_the_inner_string_begins_lighter(note, lighter):
     """Under a heavy bow B flat 4 begins half a semitone flat."""
     playing = Playing(variation=0.0, listening=0.0)
     playing.on(note)
-    share = playing.play(0.4, "value")[0][:, SHARE]
+    share = playing.play(0.4, "value")[0][:, SLOTS.bow_pressure]
     assert (share[15] < 0.9 * share[-1]) == lighter  # after 75 ms
     assert share[40] == pytest.approx(share[-1])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from held_notes import HOP, RATE, Playing
 
-from yehu_server.core.controls.slots import FINGER_POSITION, FINGER_PRESS, ONSET, SHARE, SIDE, SPEED
+from yehu_server.core.controls.slots import FINGER_POSITION, FINGER_PRESS, SLOTS
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 
@@ -52,21 +52,21 @@ def test_every_articulation_plays_finite_sound_and_ends(everything):
                 values = playing.play(0.15, "value")[0]
                 playing.off(note)
                 after = playing.play(0.2, "value")[0]
-                if not np.isfinite(values).all() or after[-1, SIDE] != 0.0:
+                if not np.isfinite(values).all() or after[-1, SLOTS.bow_side] != 0.0:
                     wrong.append((articulation.name, length, note))
     assert wrong == []
 
 
 def test_a_sprung_bow_leaves_the_string_and_a_stopped_one_stands_on_it():
     sprung, stopped = played("spiccato"), played("staccato")
-    assert abs(sprung[at(0.04), SIDE]) > 0.9
-    assert sprung[at(0.15), SIDE] == sprung[at(0.9), SIDE] == 0.0
-    assert abs(stopped[at(0.9), SIDE]) == 1.0
-    assert stopped[at(0.9), SPEED] == 0.0
+    assert abs(sprung[at(0.04), SLOTS.bow_side]) > 0.9
+    assert sprung[at(0.15), SLOTS.bow_side] == sprung[at(0.9), SLOTS.bow_side] == 0.0
+    assert abs(stopped[at(0.9), SLOTS.bow_side]) == 1.0
+    assert stopped[at(0.9), SLOTS.bow_speed] == 0.0
 
 
 def test_a_thrown_bow_bounces_five_times_and_ever_sooner():
-    side = np.abs(played("ricochet", seconds=1.2)[:, SIDE]) > 0.5
+    side = np.abs(played("ricochet", seconds=1.2)[:, SLOTS.bow_side]) > 0.5
     begins = np.flatnonzero(side[1:] & ~side[:-1]) * HOP / RATE
     gaps = np.diff(begins)
     assert len(begins) in (4, 5)  # the first may lie before the first that is seen
@@ -149,12 +149,12 @@ def test_strokes_in_a_hurry_come_sooner_and_lighter():
         playing = Playing(variation=0.0, listening=0.0)
         playing.on(74)
         playing.play(since)
-        before = float(playing.controls["target"][SHARE])
+        before = float(playing.controls["target"][SLOTS.bow_pressure])
         playing.off(74)
         playing.on(74)
-        speed = np.abs(playing.play(0.025, "value")[0][-1, SPEED])
-        arrived = speed > 0.95 * abs(float(playing.controls["target"][SPEED]))
-        lighter = float(playing.controls["target"][SHARE]) < 0.9 * before
+        speed = np.abs(playing.play(0.025, "value")[0][-1, SLOTS.bow_speed])
+        arrived = speed > 0.95 * abs(float(playing.controls["target"][SLOTS.bow_speed]))
+        lighter = float(playing.controls["target"][SLOTS.bow_pressure]) < 0.9 * before
         if (arrived, lighter) != (is_hurried, is_hurried):
             wrong.append((since, arrived, lighter))
     assert wrong == []
@@ -186,8 +186,8 @@ def test_a_vibrato_fades_with_the_last_note_and_comes_in_anew_with_the_next():
     playing.off(74)
     playing.play(0.05)
     playing.on(76)
-    onset = playing.play(0.7, "value")[0][:, ONSET]
+    onset = playing.play(0.7, "value")[0][:, SLOTS.vibrato_onset]
     assert onset[: at(0.1)].max() < 0.3
     assert onset[-1] == 1.0
     playing.off(76)
-    assert playing.play(1.0, "value")[0][-1, ONSET] == 0.0
+    assert playing.play(1.0, "value")[0][-1, SLOTS.vibrato_onset] == 0.0

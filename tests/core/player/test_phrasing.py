@@ -3,7 +3,7 @@
 import numpy as np
 from held_notes import Playing
 
-from yehu_server.core.controls.slots import DEPTH, FINGER_POSITION, ONSET
+from yehu_server.core.controls.slots import FINGER_POSITION, SLOTS
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 
@@ -12,7 +12,7 @@ def test_a_long_note_gets_a_vibrato_that_comes_late_if_phrased_and_none_was_aske
         """Depth (cents) and onset of the vibrato, every 5 ms."""
         playing = Playing(**values)
         playing.on(note)
-        return playing.play(seconds, "value")[0][:, [DEPTH, ONSET]].T
+        return playing.play(seconds, "value")[0][:, [SLOTS.vibrato_depth, SLOTS.vibrato_onset]].T
 
     depth, onset = vibrato(79, 2.0, phrasing=0.5)
     assert depth[-1] == 30.0

@@ -5,8 +5,7 @@ import pytest
 from held_notes import Playing
 
 from yehu_server.core.controls.record import FORCE_DRIFT, POSITION_DRIFT, SPEED_DRIFT
-from yehu_server.core.controls.slots import POSITION as BOW_PLACE
-from yehu_server.core.controls.slots import SHARE
+from yehu_server.core.controls.slots import SLOTS
 
 BOW = [SPEED_DRIFT, FORCE_DRIFT, POSITION_DRIFT]
 STILL = {"variation": 0.0, "listening": 0.0, "bow_length": 0.0}
@@ -93,8 +92,8 @@ def test_the_curves_stay_within_what_the_note_bears():
     values, drift = playing.play(4.0, "value", "drift")
     _, _, _, firm, _, _ = playing.player["bowing"]
     flautando = playing.player["bowing"][1]
-    share = values[40:, SHARE] * (1.0 + drift[40:, FORCE_DRIFT])
-    usual = values[40:, SHARE]
+    share = values[40:, SLOTS.bow_pressure] * (1.0 + drift[40:, FORCE_DRIFT])
+    usual = values[40:, SLOTS.bow_pressure]
     assert (share >= np.minimum(flautando, usual) - 0.02).all()
     assert (share <= np.maximum(firm, usual) + 0.02).all()
 
@@ -112,11 +111,11 @@ def test_louder_is_heavier_and_nearer_to_the_bridge_within_the_note(phrasing):
     playing.commands.write("/playing/dynamics", 1.0)
     loud = playing.play(0.3, "value")[0][-1]
     if phrasing > 0.0:
-        assert loud[SHARE] > 1.1 * soft[SHARE]
-        assert loud[BOW_PLACE] < 0.93 * soft[BOW_PLACE]
+        assert loud[SLOTS.bow_pressure] > 1.1 * soft[SLOTS.bow_pressure]
+        assert loud[SLOTS.bow_position] < 0.93 * soft[SLOTS.bow_position]
     else:
-        assert loud[SHARE] == soft[SHARE]
-        assert loud[BOW_PLACE] == soft[BOW_PLACE]
+        assert loud[SLOTS.bow_pressure] == soft[SLOTS.bow_pressure]
+        assert loud[SLOTS.bow_position] == soft[SLOTS.bow_position]
 
 
 def test_most_notes_begin_on_their_pitch_and_some_a_little_below():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from held_notes import Playing
 
-from yehu_server.core.controls.slots import DEPTH, UPWARD
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.physics.default_quantities import measured_body
 from yehu_server.core.player.vibrato_table import (
     CENTRE,
@@ -57,7 +57,7 @@ def played(note: int, **values: float) -> tuple[float, float]:
     playing = Playing(variation=0.0, **values)
     playing.on(note)
     (found,) = playing.play(0.2, "value")
-    return found[-1, DEPTH], found[-1, UPWARD]
+    return found[-1, SLOTS.vibrato_depth], found[-1, SLOTS.vibrato_upward]
 
 
 def test_the_player_narrows_it_at_a5_alone_of_two_neighbours():

@@ -11,7 +11,7 @@ import pytest
 from yehu_server.core.engine.voice_callback import COMMAND_NUMBERS, follow_voice, voice_prepare
 from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import HIGHEST_NOTE, LOWEST_NOTE
-from yehu_server.core.player.parameter_indices import DYNAMICS
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.voice.note_detection import FOLLOWER, MAX_TRANSPOSE
 
 RATE = 48000.0
@@ -46,7 +46,7 @@ def followed(
         )
         time = (start + len(block)) / rate
         for kind, index, value, other in into[:count].tolist():
-            is_louder = (int(kind), int(index)) == (WRITE, DYNAMICS)
+            is_louder = (int(kind), int(index)) == (WRITE, PLAYING.dynamics)
             pitch_or_value = other if int(kind) == BEGIN else value
             commands.append((time, LOUDER if is_louder else int(kind), pitch_or_value))
         times.append(time)

@@ -1,7 +1,5 @@
 """The kernel's controls of bow, fingers and pluck at each sample. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -16,26 +14,7 @@ from yehu_server.core.controls.record import (
     PRESS_DRIFT,
     SPEED_DRIFT,
 )
-from yehu_server.core.controls.slots import (
-    ASSIST,
-    DEPTH,
-    FINGER_POSITION,
-    FINGER_PRESS,
-    FORCE,
-    NOISE,
-    ONSET,
-    PLUCK,
-    PLUCK_POSITION,
-    POSITION,
-    RATE,
-    SHARE,
-    SIDE,
-    SPEED,
-    TREMOLO,
-    TREMOLO_DEPTH,
-    UPWARD,
-    VIBRATO_PRESS,
-)
+from yehu_server.core.controls.slots import FINGER_POSITION, FINGER_PRESS, SLOTS
 from yehu_server.core.physics.elementary import exp2, log, sin
 from yehu_server.core.physics.layout import (
     CONTROLS_PER_FINGER,
@@ -94,38 +73,35 @@ def advance_drifts(c: Any) -> None:
 
 @compiled
 def vibrato_at(c: Any, phase: float) -> float:
-    """The value of the vibrato at a phase (turns), faded in by /vibrato/onset.
-
-    It swings by 1 to either side of /vibrato/upward.
-    """
-    if c.value[ONSET] <= MIN_ONSET:
+    """The vibrato at a phase (turns): by 1 about /vibrato/upward, faded in by its onset."""
+    if c.value[SLOTS.vibrato_onset] <= MIN_ONSET:
         return 0.0
-    fade_in = (c.value[ONSET] - MIN_ONSET) / (1.0 - MIN_ONSET)
-    value = sin(2.0 * math.pi * phase) + c.value[UPWARD]
+    fade_in = (c.value[SLOTS.vibrato_onset] - MIN_ONSET) / (1.0 - MIN_ONSET)
+    value = sin(2.0 * math.pi * phase) + c.value[SLOTS.vibrato_upward]
     return float(fade_in * fade_in * (3.0 - 2.0 * fade_in) * value)
 
 
 @compiled_exactly
 def advance_vibrato(c: Any) -> None:
     """Advance the phase of the vibrato by one sample."""
-    if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
+    if c.value[SLOTS.vibrato_depth] == 0.0 and c.value[SLOTS.vibrato_press] == 0.0:
         c.vibrato = 0.0
         return
-    c.vibrato += c.vibrato_rate_factor * c.value[RATE] / c.rate
+    c.vibrato += c.vibrato_rate_factor * c.value[SLOTS.vibrato_rate] / c.rate
     c.vibrato -= math.floor(c.vibrato)
 
 
 @compiled_exactly
 def advance_tremolo(c: Any) -> None:
     """Advance the phase of the tremolo by one sample; without one, to the end of its stroke."""
-    strokes = c.value[TREMOLO]
+    strokes = c.value[SLOTS.bow_tremolo]
     if strokes == 0.0:
         if c.tremolo == FORWARD:
             return
         strokes = LAST_STROKES
     before = c.tremolo
     c.tremolo += 0.5 * strokes / c.rate
-    if c.value[TREMOLO] == 0.0 and before < FORWARD <= c.tremolo:
+    if c.value[SLOTS.bow_tremolo] == 0.0 and before < FORWARD <= c.tremolo:
         c.tremolo = FORWARD
     c.tremolo -= math.floor(c.tremolo)
 
@@ -143,7 +119,7 @@ def advance_phases(c: Any, frames: int) -> None:
 def vibrate(c: Any) -> float:
     """Advance the vibrato by one sample; its value."""
     advance_vibrato(c)
-    if c.value[DEPTH] == 0.0 and c.value[VIBRATO_PRESS] == 0.0:
+    if c.value[SLOTS.vibrato_depth] == 0.0 and c.value[SLOTS.vibrato_press] == 0.0:
         return 0.0
     return float(c.vibrato_depth_factor * vibrato_at(c, c.vibrato))
 
@@ -152,13 +128,13 @@ def vibrate(c: Any) -> float:
 def next_tremolo_factor(c: Any) -> float:
     """Advance the tremolo by one sample; factor of the bow's speed, -1 to 1."""
     advance_tremolo(c)
-    return 1.0 if c.value[TREMOLO] == 0.0 and c.tremolo == FORWARD else tremolo_factor(c)
+    return 1.0 if c.value[SLOTS.bow_tremolo] == 0.0 and c.tremolo == FORWARD else tremolo_factor(c)
 
 
 @compiled
 def tremolo_factor(c: Any) -> float:
     """Factor of the bow's speed at this phase of the tremolo, -1 to 1."""
-    swing, depth = sin(2.0 * math.pi * c.tremolo), c.value[TREMOLO_DEPTH]
+    swing, depth = sin(2.0 * math.pi * c.tremolo), c.value[SLOTS.bow_tremolo_depth]
     quick = max(-1.0, min(1.0, TREMOLO_CLIP * swing))
     return float((1.0 - depth) * quick + depth * swing * abs(swing))
 
@@ -172,8 +148,8 @@ def stop_strings(c: Any, control: Array) -> float:
     vibrato = vibrate(c)
     stretch, harder = 1.0, 1.0
     if vibrato != 0.0:
-        stretch = exp2(-vibrato * c.value[DEPTH] / 1200.0)
-        harder = 1.0 + vibrato * c.value[VIBRATO_PRESS]
+        stretch = exp2(-vibrato * c.value[SLOTS.vibrato_depth] / 1200.0)
+        harder = 1.0 + vibrato * c.value[SLOTS.vibrato_press]
     stop = 0.0
     for j in range(MAX_FINGERS):
         column = FINGER_CONTROLS + CONTROLS_PER_FINGER * j
@@ -202,9 +178,9 @@ def stop_strings(c: Any, control: Array) -> float:
 @compiled
 def pluck(c: Any) -> float:
     """Force (N) of the pluck at this sample; it is released once its ramp has ended."""
-    force = c.value[PLUCK]
-    if force != 0.0 and c.remaining[PLUCK] == 0:
-        start_ramp(c, PLUCK, 0.0, c.let_go)
+    force = c.value[SLOTS.pluck_force]
+    if force != 0.0 and c.remaining[SLOTS.pluck_force] == 0:
+        start_ramp(c, SLOTS.pluck_force, 0.0, c.let_go)
     return float(force)
 
 
@@ -215,10 +191,10 @@ def bow_force(c: Any, string: int, speed: float) -> float:
     Here F_max = 2 Z v_b / (beta (mu_S - mu_C)) is Schelleng's upper limit [Schelleng], and the
     share is /bow/pressure and a little more for a fast bow.
     """
-    limit = c.schelleng[string] * abs(speed) / c.value[POSITION]
-    assist = c.value[ASSIST]
-    share = c.value[SHARE] + EXTRA_SHARE * min(1.0, (speed / EXTRA_SHARE_SPEED) ** 2)
-    return float(assist * share * limit + (1.0 - assist) * c.value[FORCE])
+    limit = c.schelleng[string] * abs(speed) / c.value[SLOTS.bow_position]
+    assist = c.value[SLOTS.bow_assist]
+    share = c.value[SLOTS.bow_pressure] + EXTRA_SHARE * min(1.0, (speed / EXTRA_SHARE_SPEED) ** 2)
+    return float(assist * share * limit + (1.0 - assist) * c.value[SLOTS.bow_force])
 
 
 @compiled
@@ -229,8 +205,8 @@ def hair_noise(c: Any, string: int, force: float) -> float:
     the depth the same under any force, noise would grow by 8 dB more than the tone from soft to
     loud; in recordings of a cello it grows by 2 dB more.
     """
-    soft = SOFT_EFFORT * c.schelleng[string] / c.value[POSITION]
-    return float(c.value[NOISE] * soft / max(abs(force), soft))
+    soft = SOFT_EFFORT * c.schelleng[string] / c.value[SLOTS.bow_position]
+    return float(c.value[SLOTS.bow_noise] * soft / max(abs(force), soft))
 
 
 @compiled
@@ -241,10 +217,14 @@ def is_still(c: Any) -> bool:
     """
     if c.moving_count > 0 or c.silence_in > 0 or c.drifting != 0:
         return False
-    if c.value[SPEED] != 0.0 or c.value[SIDE] != 0.0 or c.value[PLUCK] != 0.0:
+    if (
+        c.value[SLOTS.bow_speed] != 0.0
+        or c.value[SLOTS.bow_side] != 0.0
+        or c.value[SLOTS.pluck_force] != 0.0
+    ):
         return False
-    is_vibrating = c.value[DEPTH] != 0.0 or c.value[VIBRATO_PRESS] != 0.0
-    is_vibrating = is_vibrating and c.value[ONSET] > MIN_ONSET
+    is_vibrating = c.value[SLOTS.vibrato_depth] != 0.0 or c.value[SLOTS.vibrato_press] != 0.0
+    is_vibrating = is_vibrating and c.value[SLOTS.vibrato_onset] > MIN_ONSET
     for j in range(MAX_FINGERS):
         if c.value[FINGER_PRESS[j]] > 0.0:
             if is_vibrating:
@@ -256,50 +236,37 @@ def is_still(c: Any) -> bool:
 
 @compiled
 def cross_strings(c: Any, speed: float, side: float) -> tuple[float, float, float]:
-    """Carry the bow from one string to the other.
+    """Carry the bow from one string to the other: returns two speeds (m/s) and a weight.
 
     It comes to rest on the string that it leaves, which friction at a bow at rest soon damps, and
     its weight leaves that slowly enough not to pluck it. It meets the other string at a part of its
     speed and accelerates, while its weight comes in half the time in which it left: with less force
-    for that speed a high note slips twice in a period, and is heard an octave up [Guettler].
-
-    Returns
-    -------
-    speed : float
-        Of the bow (m/s).
-    force_speed : float
-        The speed from which the bow's force is computed (m/s).
-    weight : float
-        Share of that force on the string, by its sign the inner (positive) or the outer one.
+    for that speed a high note slips twice in a period, and is heard an octave up [Guettler]. The
+    speeds are the bow's, and that from which its force is computed; the weight is the share of that
+    force, above 0 on the inner string.
     """
-    if side * c.target[SIDE] < 0.0:
+    if side * c.target[SLOTS.bow_side] < 0.0:
         if side * c.side_before <= 0.0:
             c.side_before, c.speed_before = side, speed
         left = side / c.side_before
         speed = c.speed_before * max(0.0, 2.0 * left - 1.0)
         return speed, c.speed_before, side * left * (2.0 - left)
     if side * c.side_before < 0.0:
-        c.value[SPEED] = CROSSING_SPEED_FRACTION * c.target[SPEED]
-        start_ramp(c, SPEED, c.target[SPEED], c.remaining[SPEED])
-        start_ramp(c, SIDE, c.target[SIDE], c.remaining[SIDE] // 2)
+        c.value[SLOTS.bow_speed] = CROSSING_SPEED_FRACTION * c.target[SLOTS.bow_speed]
+        start_ramp(c, SLOTS.bow_speed, c.target[SLOTS.bow_speed], c.remaining[SLOTS.bow_speed])
+        start_ramp(c, SLOTS.bow_side, c.target[SLOTS.bow_side], c.remaining[SLOTS.bow_side] // 2)
     c.side_before, c.speed_before = side, speed
     return speed, speed, side
 
 
 @compiled
 def write_controls(c: Any, control: Array) -> None:
-    """Write the kernel's controls for this sample. Real time: safe.
-
-    Parameters
-    ----------
-    control : ndarray [shape=(columns,)]
-        See ``physics.layout``.
-    """
+    """Write the kernel's controls (``physics.layout``) for this sample. Real time: safe."""
     advance_drifts(c)
     stop = stop_strings(c, control)
-    speed, side = c.value[SPEED] * next_tremolo_factor(c), c.value[SIDE]
+    speed, side = c.value[SLOTS.bow_speed] * next_tremolo_factor(c), c.value[SLOTS.bow_side]
     speed, force_speed, weight = cross_strings(c, speed, side)
-    beta, firmness = c.value[POSITION], 1.0
+    beta, firmness = c.value[SLOTS.bow_position], 1.0
     if c.drifting != 0:
         speed *= 1.0 + c.drift[SPEED_DRIFT]
         force_speed *= 1.0 + c.drift[SPEED_DRIFT]
@@ -315,4 +282,4 @@ def write_controls(c: Any, control: Array) -> None:
     control[X_B] = c.bridge_x - beta * sounding
     control[F_HAMMER] = 0.0
     control[F_PLUCK] = pluck(c)
-    control[X_PLUCK] = c.bridge_x - c.value[PLUCK_POSITION] * (c.bridge_x - stop)
+    control[X_PLUCK] = c.bridge_x - c.value[SLOTS.pluck_position] * (c.bridge_x - stop)

@@ -1,23 +1,12 @@
 """Ramps of the engine's parameters, and the gains and tunings that follow them. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.controls.slots import (
-    BALANCE,
-    GAIN,
-    LEVEL,
-    LOSS,
-    LOWER_BOUNDS,
-    SILENCE,
-    SLOT_COUNT,
-    TUNING,
-)
+from yehu_server.core.controls.slots import LOSS, LOWER_BOUNDS, SILENCE, SLOT_COUNT, SLOTS, TUNING
 from yehu_server.core.physics.elementary import exp, exp10
 from yehu_server.core.physics.layout import STRINGS
 
@@ -34,30 +23,15 @@ def pole_of_cutoff(frequency: float, rate: float) -> float:
 
 @compiled
 def one_pole(y: float, x: float, a: float) -> float:
-    """Compute the next output. Real time: safe.
-
-    Parameters
-    ----------
-    y, x : float
-        The last output, and the input.
-    a : float
-        1 less the pole: from 0 (the output is held) to 1 (the output is the input).
-    """
+    """The next output, of the last, the input, and 1 less the pole (0: held). Real time: safe."""
     return y + a * (x - y)
 
 
 @compiled
 def start_ramp(c: Any, slot: int, target: float, ramp: int) -> None:
-    """Begin a parameter's ramp to a target, clamped to its range.
+    """Begin the ramp (frames) of a slot, or SILENCE, to a target, clamped to its range.
 
     A target that is not a number is ignored. Real time: safe.
-
-    Parameters
-    ----------
-    slot : int
-        Slot of the parameter, or SILENCE.
-    ramp : int
-        Length of the ramp (frames).
     """
     if slot == SILENCE:
         if c.silence_in == 0:
@@ -114,8 +88,8 @@ def amplitude(c: Any, of: int, decibels: float) -> float:
 @compiled
 def level(c: Any) -> float:
     """Gain from pascals to full scale at this sample."""
-    factor = amplitude(c, TO_OUTPUT, c.value[GAIN] + c.value[BALANCE])
-    return float(c.value[LEVEL] * factor / FULL_SCALE_PRESSURE * (1.0 + c.swell))
+    factor = amplitude(c, TO_OUTPUT, c.value[SLOTS.output_gain] + c.value[SLOTS.output_balance])
+    return float(c.value[SLOTS.output_level] * factor / FULL_SCALE_PRESSURE * (1.0 + c.swell))
 
 
 @compiled

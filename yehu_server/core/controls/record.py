@@ -1,7 +1,5 @@
 """The record of the controls: each parameter's value and ramp, and what moves with them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Annotated, Any
@@ -13,8 +11,8 @@ from yehu_server.core.controls.slots import (
     FINGER_POSITION,
     FINGER_PRESS,
     LOSS,
-    PLUCK,
     SLOT_COUNT,
+    SLOTS,
     TUNING,
     UPPER_BOUNDS,
 )
@@ -74,10 +72,7 @@ CONTROLS = np.dtype(
         ("finger_up", np.int64, MAX_FINGERS),  # frames since each finger was lifted
         ("rate", np.float64),  # of samples (Hz)
         ("fade", np.int64),  # length of a fade to silence (frames)
-        (
-            "vibrato_rate_factor",
-            np.float64,
-        ),  # of this cycle of the vibrato
+        ("vibrato_rate_factor", np.float64),  # of this cycle of the vibrato
         ("vibrato_depth_factor", np.float64),
         ("vibrato", np.float64),  # phases of vibrato and tremolo (turns)
         ("tremolo", np.float64),
@@ -96,18 +91,7 @@ Controls = Annotated[Any, CONTROLS]
 
 
 def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, float]) -> Any:
-    """Prepare the record.
-
-    Parameters
-    ----------
-    rate : float, Hz
-    values : mapping
-        The value of every parameter, by address.
-
-    Returns
-    -------
-    ndarray [shape=(1,), dtype=CONTROLS]
-    """
+    """A record of CONTROLS [shape=(1,)] at a rate (Hz) with all parameters' values, by address."""
     controls = np.zeros(1, CONTROLS)
     controls["value"][0] = controls["target"][0] = [values[param.address] for param in ENGINE]
     controls["factor"] = 1.0  # of 0 dB
@@ -135,7 +119,7 @@ def prepare_controls(quantities: Quantities, rate: float, values: Mapping[str, f
 
 def jump_to_targets(controls: Any) -> None:
     """Jump to the targets of all parameters of a record of dtype CONTROLS, in place."""
-    controls["target"][PLUCK] = 0.0
+    controls["target"][SLOTS.pluck_force] = 0.0
     controls["value"] = controls["target"]
     controls["remaining"] = 0
     controls["moving_count"], controls["is_moving"] = 0, 0

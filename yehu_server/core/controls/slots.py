@@ -1,29 +1,30 @@
 """Numbers of the engine's parameters in the arrays of the controls."""
 
-from __future__ import annotations
+from collections.abc import Mapping
+from types import ModuleType
 
 import numpy as np
 
 from yehu_server.params.table import ENGINE, FINGERS, SLOT, STRING_NAMES
 
-SPEED, SIDE = SLOT["/bow/speed"], SLOT["/bow/side"]
-FORCE, SHARE, ASSIST = SLOT["/bow/force"], SLOT["/bow/pressure"], SLOT["/bow/assist"]
-TREMOLO_DEPTH = SLOT["/bow/tremolo_depth"]
-POSITION, TREMOLO = SLOT["/bow/position"], SLOT["/bow/tremolo"]
+
+def constants(numbers: Mapping[str, int], prefix: str = "/") -> ModuleType:
+    """Numbers by the rest of their addresses after a prefix, with underscores for slashes.
+
+    Of a module, as its attributes are constants in compiled code.
+    """
+    found = ModuleType(prefix)
+    for address, number in numbers.items():
+        if address.startswith(prefix):
+            setattr(found, address.removeprefix(prefix).replace("/", "_"), number)
+    return found
+
+
+SLOTS = constants(SLOT)  # such as SLOTS.bow_speed
 FINGER_POSITION = np.array([SLOT[f"/finger/{number}/position"] for number in FINGERS])
 FINGER_PRESS = np.array([SLOT[f"/finger/{number}/press"] for number in FINGERS])
-DEPTH, VIBRATO_PRESS = SLOT["/vibrato/depth"], SLOT["/vibrato/press"]
-RATE, ONSET = SLOT["/vibrato/rate"], SLOT["/vibrato/onset"]
-UPWARD = SLOT["/vibrato/upward"]
-PLUCK, PLUCK_POSITION = SLOT["/pluck/force"], SLOT["/pluck/position"]
-GAIN, LEVEL = SLOT["/output/gain"], SLOT["/output/level"]
-BALANCE, BLEND = SLOT["/output/balance"], SLOT["/body/blend"]
-BODY, LIMITER = SLOT["/body/gain"], SLOT["/output/limiter"]
 TUNING = np.array([SLOT[f"/string/{name}/tuning"] for name in STRING_NAMES])
 LOSS = np.array([SLOT[f"/string/{name}/loss"] for name in STRING_NAMES])
-NOISE = SLOT["/bow/noise"]
-BRILLIANCE, SWAY = SLOT["/body/brilliance"], SLOT["/body/sway"]
-BRILLIANCE_FREQUENCY = SLOT["/body/brilliance_frequency"]
 # What the stage needs of a player with each sample, and the columns that it is in.
 STAGE_INPUTS = np.array([
     SLOT[f"/{name}"]

@@ -4,8 +4,6 @@ A thread that reads the value of a `store_release` by `load_acquire` sees all th
 before it. On x86 these are plain moves, on ARM ``stlr`` and ``ldar``.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -5,8 +5,6 @@ rate, so that a constant rate leaves no error. Its damping ratio is 1 / sqrt(2).
 Source: [Adriaensen], the loop's equations.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -40,16 +38,9 @@ def predicted_ns(loop: Any, frames: int) -> int:
 
 @compiled
 def follow(loop: Any, due_ns: int, error_ns: int, frames: int, rate: float) -> None:
-    """Update the loop with an event. Real time: safe.
+    """Update the loop with an event `error_ns` after it was due. Real time: safe.
 
-    Parameters
-    ----------
-    due_ns, error_ns : int
-        The predicted time, and how much later the event came.
-    frames : int
-        Frames since the event before.
-    rate : float, Hz
-        The nominal rate.
+    `frames` since the event before, `rate` (Hz) the nominal one.
     """
     turn = 2.0 * math.pi * BANDWIDTH_HZ * frames / rate
     loop.due_ns, loop.error_ns = due_ns + int(math.sqrt(2.0) * turn * error_ns), error_ns

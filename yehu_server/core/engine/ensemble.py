@@ -1,9 +1,4 @@
-"""Instruments on one stage, for Python: they play together, to left and right, in a room.
-
-One or more; live and offline alike.
-"""
-
-from __future__ import annotations
+"""Instruments on one stage, one or more, live or offline: to left and right, in a room."""
 
 from collections.abc import Sequence
 from ctypes import addressof, c_float
@@ -159,10 +154,7 @@ class Ensemble:
         clear_stage(self._stage)
 
     def come_to_rest(self) -> None:
-        """Put all models to rest at once, and move all parameters to their targets.
-
-        Nothing may compute meanwhile.
-        """
+        """Put models to rest, parameters to their targets; nothing may compute meanwhile."""
         for instrument in self.instruments:
             instrument.come_to_rest()
         clear_stage(self._stage)
@@ -188,14 +180,9 @@ class Ensemble:
             instrument.gaps.append(gap)
 
     def taped(self, start: int) -> tuple[int, Array]:
-        """The frames that were played from one on.
+        """The frames [shape=(frames, 2), float32] that were played from one on; and the first.
 
-        Returns
-        -------
-        frame : int
-            The first frame returned: a later one where the tape, which holds the last
-            `TAPE_FRAMES`, has overwritten `start`.
-        samples : ndarray [shape=(frames, 2), float32]
+        It is a later one where the tape, of the last `TAPE_FRAMES`, has overwritten `start`.
         """
         margin = TAPE_FRAMES // 8  # may be overwritten during the copy
         end = native.taped.call(self._address)
@@ -204,12 +191,6 @@ class Ensemble:
 
 
 def check_parts(parts: int) -> None:
-    """Refuse a number of instruments that no stage has room for.
-
-    Raises
-    ------
-    ParameterError
-        Where it has not.
-    """
+    """Raise ParameterError for a number of instruments that no stage has room for."""
     if not 1 <= parts <= MAX_PARTS:
         raise ParameterError(f"{parts} parts: a stage has 1 to {MAX_PARTS}")

@@ -9,8 +9,6 @@ cost (``mailbox.ready_at``) come at a later frame, MIDI's first. Then the server
 and each page have an even share each (`next_queue`). Each has a queue of its own.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -86,13 +84,7 @@ def interpret_events(rigs: Any, end: int) -> int:
     """Interpret what all parts were sent for frames before `end`.
 
     Returns the frame before which that is done: sooner than `end`, where commands find no room
-    until others are applied.
-
-    Parameters
-    ----------
-    rigs : pointer to records of dtype RIG
-
-    Real time: safe.
+    until others are applied. `rigs` points to records of dtype RIG. Real time: safe.
     """
     now = record_at(rigs, CONTROLS_AT, CONTROLS).frame
     done = end
@@ -249,10 +241,7 @@ def queue_of(writer: int, number: int) -> int:
 
 @compiled_with_aliasing
 def takes(number: int, pending: int, kind: int) -> bool:
-    """Whether a queue takes an event.
-
-    Of a page and a sender the last entries are for those that end what plays.
-    """
+    """Whether a queue takes an event: the last entries of pages and senders are for what ends."""
     is_any = number < PAGES or kind in (LEAVE, LIFT, RELEASE_ALL)
     return bool(pending < (QUEUE_SIZES[number] if is_any else QUEUE_SIZES[number] - RESERVE))
 

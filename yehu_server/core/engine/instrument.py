@@ -1,7 +1,5 @@
 """The instrument for Python: post commands, read meters; alone, compute samples without a room."""
 
-from __future__ import annotations
-
 import secrets
 from ctypes import addressof, c_float
 from typing import Any
@@ -10,20 +8,8 @@ import numpy as np
 
 from yehu_server.core.controls.record import jump_to_targets, prepare_controls
 from yehu_server.core.controls.slots import SILENCE
-from yehu_server.core.engine import native
+from yehu_server.core.engine import mailbox, native
 from yehu_server.core.engine.event_dispatch import index_notes, interpret_events
-from yehu_server.core.engine.mailbox import (
-    FIRST_SENDER,
-    KIND_BITS,
-    LIVE_BUDGET,
-    LIVE_INTAKE,
-    MIDI_INPUTS,
-    RING,
-    SERVER,
-    UNLIMITED,
-    repair,
-    repair_queues,
-)
 from yehu_server.core.engine.output import prepare_output, rest_output
 from yehu_server.core.engine.rig import RIG, RIG_BYTES, memory_bytes
 from yehu_server.core.engine.spec import InstrumentSpec
@@ -70,12 +56,7 @@ class Instrument:
     """
 
     def __init__(
-        self,
-        spec: InstrumentSpec,
-        *,
-        channels: int = 1,
-        memory: Any = None,
-        is_live: bool = False,
+        self, spec: InstrumentSpec, *, channels: int = 1, memory: Any = None, is_live: bool = False
     ) -> None:
         check_rate(spec.rate)
         self.spec, self.rate, self.seed = spec, spec.rate, spec.seed
@@ -89,8 +70,8 @@ class Instrument:
         # Of the rig: the `userdata` of ``engine.native.callback``.
         self.address = self._clock = int(self._rig.ctypes.data)
         self._rig["model"] = kernel.prepare(spec.quantities, spec.rate, MAX_FINGERS)
-        self._rig["mail"]["intake"] = LIVE_INTAKE if is_live else RING
-        self._rig["mail"]["at_once"] = LIVE_BUDGET if is_live else UNLIMITED
+        self._rig["mail"]["intake"] = mailbox.LIVE_INTAKE if is_live else mailbox.RING
+        self._rig["mail"]["at_once"] = mailbox.LIVE_BUDGET if is_live else mailbox.UNLIMITED
         self._rig["mail"]["secret"] = secrets.randbits(62) if is_live else 0
         if self._stage is not None:
             self._rig["parts"][0, 0] = 1
@@ -98,10 +79,7 @@ class Instrument:
         self.reset()
 
     def reset(self) -> None:
-        """Put model and parameters back to their start; drop all commands.
-
-        Nothing may post or compute meanwhile.
-        """
+        """Put all back to its start, drop all commands; nothing may post or compute meanwhile."""
         rig, spec, values = self._rig, self.spec, self.spec.values
         rig["state"] = kernel.at_rest(rig["model"])
         made = refined.prepare(spec.quantities, self.rate)
@@ -145,15 +123,9 @@ class Instrument:
         self.gaps: list[tuple[int, int]] = []
 
     def begin_part(self, tables: Array, players: int = 1) -> None:
-        """Begin a part anew, as the first of the instruments that play it: the next on the stage.
+        """Begin a part anew, by TABLES, with so many of the next instruments as its players.
 
-        Nothing may post or compute meanwhile.
-
-        Parameters
-        ----------
-        tables : ndarray [shape=(1,), dtype=``midi.tables.TABLES``]
-        players : int
-            Number of instruments; 0 where another one is the first of this one's part.
+        Nothing may post or compute meanwhile. 0 players where another instrument is the first.
         """
         defaults = {param.address: param.default for param in TABLE}
         defaults["/engine/seed"] = find("/engine/seed").clamped(self.seed)
@@ -162,10 +134,7 @@ class Instrument:
         self._rig["tables"][0, 0] = tables[0]
 
     def set_tables(self, tables: Array) -> None:
-        """Use other tables from the beginning on, in place of those of `begin_part`.
-
-        Nothing may compute meanwhile.
-        """
+        """Use other tables from the beginning on; nothing may compute meanwhile."""
         midi = self._rig["midi"][0]
         self._rig["tables"][0, midi["tables"]] = tables[0]
         midi["lower"] = CHANNELS_PER_PORT - 1 if tables["mpe"][0] else 0
@@ -211,7 +180,7 @@ class Instrument:
     @property
     def late_midi(self) -> int:
         """Number of MIDI messages that came after their frame, since the start."""
-        return int(self._rig["mail"]["late"][0, MIDI_INPUTS])
+        return int(self._rig["mail"]["late"][0, mailbox.MIDI_INPUTS])
 
     @property
     def delay(self) -> int:
@@ -231,17 +200,9 @@ class Instrument:
     ) -> float:
         """Move a parameter of the engine to a value, clamped to its range; return that value.
 
-        Parameters
-        ----------
-        frame : int
-            When to begin; by default now. Commands of one frame are applied in the order posted.
-        ramp_ms : float
-            Length of the ramp; by default the parameter's own smoothing.
-
-        Raises
-        ------
-        ParameterError
-            Where the address is none of the engine's, or the value is not finite.
+        It begins at a frame, by default now, and takes `ramp_ms`, by default the parameter's
+        smoothing. Commands of one frame are applied in the order posted. Raises ParameterError
+        where the address is none of the engine's, or the value is not finite.
         """
         param = find(address)
         accepted = param.clamped(value)
@@ -271,12 +232,12 @@ class Instrument:
         `sender`: whose queue it waits in, from 1 to SENDER_QUEUES, or 0 for the server's own.
         """
         frame = self.frame if frame is None else frame
-        kind += sender << KIND_BITS
+        kind += sender << mailbox.KIND_BITS
         return bool(native.post.call(self.address, frame, kind, index, value, other))
 
     def has_waiting(self, sender: int) -> bool:
         """Whether events of a sender (see `post`) wait for their frame."""
-        return bool(self._rig["mail"]["pending"][0, FIRST_SENDER + sender - 1])
+        return bool(self._rig["mail"]["pending"][0, mailbox.FIRST_SENDER + sender - 1])
 
     def interpret_events(self) -> None:
         """Interpret what is posted for now, so that the record of the part has it.
@@ -289,23 +250,17 @@ class Instrument:
     @property
     def posted(self) -> int:
         """Number of events posted since the start."""
-        return int(self._rig["mail"]["posted"][0, SERVER, 0])
+        return int(self._rig["mail"]["posted"][0, mailbox.SERVER, 0])
 
     def target(self, address: str) -> float:
         """The value that a parameter of the engine has, or moves to."""
         return float(self._rig["controls"]["target"][0, SLOT[address]])
 
     def process(self, out: Array) -> None:
-        """Compute the next samples of an instrument alone, without a room (full scale is 1).
+        """Compute the next samples (full scale is 1) of an instrument alone, without a room.
 
-        Parameters
-        ----------
-        out : ndarray [shape=(frames,) or (frames, channels), float32, contiguous]
-
-        Raises
-        ------
-        TypeError
-            Where `out` is not contiguous, or the instrument is one of an ensemble.
+        `out` is contiguous float32 [shape=(frames,) or (frames, channels)]; else, or of one of an
+        ensemble, raises TypeError.
         """
         if self._stage is None:
             raise TypeError("an instrument of an ensemble is played by the ensemble")
@@ -314,10 +269,7 @@ class Instrument:
             native.callback.call(None, address, len(out), None, 0, self.address)
 
     def come_to_rest(self) -> None:
-        """Put the model to rest at once, and move all parameters to their targets.
-
-        Nothing may compute meanwhile.
-        """
+        """Put the model to rest, parameters to their targets, at once."""
         rig = self._rig
         kernel.come_to_rest(rig["model"][0], rig["state"][0])
         refined.come_to_rest(rig["refined"][0])
@@ -351,9 +303,9 @@ class Instrument:
         self._rig["version"][0, 0] += self._rig["version"][0, 0] % 2
         self._rig["meters"]["running"] = 0
         mail = self._rig["mail"][0]
-        repair_queues(self._rig["events"][0], self._rig["notes"][0], mail)
+        mailbox.repair_queues(self._rig["events"][0], self._rig["notes"][0], mail)
         index_notes.call(self.address)
-        mail["waiting"] = repair(self._rig["heap"][0], int(mail["waiting"]))
+        mail["waiting"] = mailbox.repair(self._rig["heap"][0], int(mail["waiting"]))
 
     def skip_to(self, frame: int) -> None:
         """Go on at a later frame. Nothing may compute meanwhile."""
@@ -388,8 +340,8 @@ class Instrument:
 
     def applied_commands(self) -> Array:
         """The commands applied since the last call: ndarray [shape=(commands,), dtype=COMMAND]."""
-        commands = np.zeros(RING, COMMAND)
-        count = native.read_reports.call(self.address, commands.ctypes.data, RING)
+        commands = np.zeros(mailbox.RING, COMMAND)
+        count = native.read_reports.call(self.address, commands.ctypes.data, mailbox.RING)
         return commands[:count].copy()
 
 

@@ -1,7 +1,5 @@
 """The limiter of the mix: peaks are bent, so that no sample exceeds its ceiling. Compiled."""
 
-from __future__ import annotations
-
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.elementary import power, tanh
 

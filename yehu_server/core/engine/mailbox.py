@@ -7,8 +7,6 @@ after it has written or read the entry, so neither waits. Events for a full ring
 queue of a page or of a sender of OSC, are dropped and counted.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Mixes all instruments, placed in the room, to left and right, and limits the sum. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -29,15 +27,7 @@ from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
 from yehu_server.core.stage.image_sources import EARS, REFERENCE_DISTANCE_M
 from yehu_server.core.stage.late_field import CHECK_FRAMES, is_settled, reverberate, set_room
-from yehu_server.core.stage.record import (
-    BUSES,
-    DIRECT,
-    EARLY,
-    SEND,
-    STAGE,
-    TAPE,
-    TAPE_AT,
-)
+from yehu_server.core.stage.record import BUSES, DIRECT, EARLY, SEND, STAGE, TAPE, TAPE_AT
 from yehu_server.core.stage.seat import (
     LEFT,
     RIGHT,
@@ -257,15 +247,9 @@ def at_tape(rigs: Any) -> Any:
 def mix_block(
     rigs: Any, sounded: Any, first: int, frames: int, out: Any, stems: Any, has_stems: int
 ) -> None:
-    """Mix what instruments sounded that were computed apart, by ``sounding.sound_block``.
+    """Mix what ``sounding.sound_block`` computed: SOUNDED [shape=(parts, chunks)]; see `mix`.
 
     It touches nothing that ``sound_block`` does, so the next block may be computed meanwhile.
-
-    Parameters
-    ----------
-    sounded : pointer to records of dtype SOUNDED [shape=(parts, chunks)]
-    first, out, stems, has_stems
-        As of `mix`.
     """
     mode = flush_denormals()
     parts = count_parts(rigs)

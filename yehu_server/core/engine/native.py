@@ -5,8 +5,6 @@ All state of the instruments that play together, and of their stage, lies in one
 callback computes live and offline sound.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -80,14 +78,10 @@ def publish(rig: Any) -> None:
 def callback(
     _input: Any, output: Any, frames: UInt64, _times: Any, flags: UInt64, rigs: Any
 ) -> Int32:
-    """Compute one block for PortAudio (a PaStreamCallback).
+    """Compute one block for PortAudio (a PaStreamCallback) into float32 [shape=(frames, channels)].
 
-    Parameters
-    ----------
-    output : pointer to float32 [shape=(frames, channels)]
-    rigs : pointer to records of dtype RIG, and one of dtype STAGE after them
-
-    Real time: safe; no Python, no lock, no allocation, no exception.
+    `rigs` points to records of dtype RIG, and one of dtype STAGE after them. Real time: safe; no
+    Python, no lock, no allocation, no exception.
     """
     if frames == 0:
         return 0

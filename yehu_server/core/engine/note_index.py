@@ -7,8 +7,6 @@ part of the hash, so that no sender knows which keys meet: each step takes const
 Source: Knuth, The Art of Computer Programming, vol. 3, 6.4, algorithms L and R.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

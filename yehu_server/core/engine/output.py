@@ -1,7 +1,5 @@
 """The output of one instrument, from the model's probes to samples: DC blocker, gain, fades."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,6 +9,7 @@ from yehu_server.core.controls.ramps import pole_of_cutoff, pole_of_time
 from yehu_server.core.controls.record import CHUNK, FADE_S
 from yehu_server.core.controls.slots import STAGE_INPUTS
 from yehu_server.core.engine.sleep import SLEEP, wake_up
+from yehu_server.core.physics import lobes
 from yehu_server.core.physics.layout import (
     BRIDGE_FORCE,
     ITERATIONS,
@@ -18,13 +17,6 @@ from yehu_server.core.physics.layout import (
     PRESSURE,
     control_columns,
     probe_columns,
-)
-from yehu_server.core.physics.lobes import (
-    DIRECTIONS,
-    LOBES,
-    clear_lobes,
-    prepare_lobes,
-    radiate_aside,
 )
 from yehu_server.core.physics.shelf import SHELF, prepare_shelf, shelved
 
@@ -60,7 +52,7 @@ OUTPUT = np.dtype(
         ("pressure", np.float64),  # input and output of the DC blocker (Pa)
         ("dc_free", np.float64),
         ("blocker", np.float64),
-        ("lobes", LOBES),
+        ("lobes", lobes.LOBES),
         ("shelf", SHELF),
         ("sleep", SLEEP),
         ("controls", np.float64, (CHUNK, control_columns(MAX_FINGERS))),
@@ -68,7 +60,7 @@ OUTPUT = np.dtype(
         ("gain", np.float64, CHUNK),
         ("body", np.float64, CHUNK),
         ("blend", np.float64, CHUNK),
-        ("turned", np.float64, (CHUNK, DIRECTIONS)),  # of `lobes`, how much
+        ("turned", np.float64, (CHUNK, lobes.DIRECTIONS)),  # of `lobes`, how much
         ("brilliance", np.float64, CHUNK),  # gain (dB) of the shelf, and its frequency (Hz)
         ("brilliance_frequency", np.float64, CHUNK),
         ("sounded", SOUNDED),
@@ -82,7 +74,7 @@ def prepare_output(output: Any, rate: float) -> None:
     output["invalid_samples"], output["sounded"]["silenced_at"] = 0, NOT_SILENCED
     output["decay"] = pole_of_time(FADE_S, rate)
     output["blocker"] = pole_of_cutoff(BLOCKED_HZ, rate)
-    prepare_lobes(output["lobes"], rate)
+    lobes.prepare_lobes(output["lobes"], rate)
     prepare_shelf(output["shelf"], rate)
     rest_output(output)
 
@@ -102,15 +94,12 @@ def clear_filters(o: Any) -> None:
     """Clear the filters' states, when the model is put to rest. Real time: safe."""
     o.pressure, o.dc_free, o.fading = 0.0, 0.0, 0.0
     o.shelf.held[0], o.shelf.held[1] = 0.0, 0.0
-    clear_lobes(o.lobes)
+    lobes.clear_lobes(o.lobes)
 
 
 @compiled
 def output_sample(o: Any, n: int) -> float:
-    """Compute a sample from row `n` of the probes; a lost state fades out. Real time: safe.
-
-    The sample is finite whatever the probes are; it is not limited.
-    """
+    """A finite, unlimited sample of row `n` of the probes; lost states fade. Real time: safe."""
     probe = o.probes[n]
     if probe[ITERATIONS] < 0:
         o.fading = o.last
@@ -118,7 +107,7 @@ def output_sample(o: Any, n: int) -> float:
     o.fading *= o.decay
     # The DC blocker also removes the static pull of a finger at the bridge.
     ahead = o.body[n] * probe[PRESSURE]
-    first, second = radiate_aside(o.lobes, ahead)
+    first, second = lobes.radiate_aside(o.lobes, ahead)
     radiated = ahead + (o.turned[n, 0] * first + o.turned[n, 1] * second)
     source = radiated + o.blend[n] * (BRIDGE_PRESSURE * probe[BRIDGE_FORCE] - radiated)
     o.dc_free = source - o.pressure + o.blocker * o.dc_free

@@ -4,8 +4,6 @@ Denormal numbers (below 1e-308) slow some processors down a hundredfold. A decay
 of them, so the audio thread flushes them to zero.
 """
 
-from __future__ import annotations
-
 import platform
 import time
 from typing import Any

@@ -1,9 +1,4 @@
-"""The state of one instrument and its player ("rig"), laid out in memory that processes may share.
-
-The rigs of all that play together lie one after another; the stage's record comes after the last.
-"""
-
-from __future__ import annotations
+"""The state of instruments and players ("rigs"), in a row in shared memory, and their stage's."""
 
 from typing import Any
 
@@ -13,15 +8,7 @@ from yehu_server.compile.jit import compiled_with_aliasing
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.record import CONTROLS
 from yehu_server.core.engine.atomics import at
-from yehu_server.core.engine.mailbox import (
-    HEAP,
-    LINE,
-    MAIL,
-    QUEUE_SIZES,
-    RING,
-    SMALL_RING,
-    WAITING,
-)
+from yehu_server.core.engine.mailbox import HEAP, LINE, MAIL, QUEUE_SIZES, RING, SMALL_RING, WAITING
 from yehu_server.core.engine.note_index import NOTES, SLOTS_PER_EVENT
 from yehu_server.core.engine.output import OUTPUT
 from yehu_server.core.engine.telemetry import METERS

@@ -7,8 +7,6 @@ very frame that it is due, and it goes on from there. The player goes on meanwhi
 numbers are the same whether the instrument slept or not.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

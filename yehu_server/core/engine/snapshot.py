@@ -3,8 +3,6 @@
 Taking one only reads. Beside a callback on another thread, half of it may be a block older.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -14,14 +12,7 @@ from yehu_server.compile.jit import native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.kernel_controls import bow_force, tremolo_factor
 from yehu_server.core.controls.record import CONTROLS, FORCE_DRIFT, SPEED_DRIFT
-from yehu_server.core.controls.slots import (
-    FINGER_POSITION,
-    FINGER_PRESS,
-    POSITION,
-    SIDE,
-    SLOT_COUNT,
-    SPEED,
-)
+from yehu_server.core.controls.slots import FINGER_POSITION, FINGER_PRESS, SLOT_COUNT, SLOTS
 from yehu_server.core.engine.atomics import record_at
 from yehu_server.core.engine.rig import (
     CONTROLS_AT,
@@ -37,7 +28,7 @@ from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.physics.layout import MAX_FINGERS, MODEL, STATE, STRINGS
 from yehu_server.core.physics.schelleng import lower_limit, resistance, upper_limit
 from yehu_server.core.player.notes import sounding_pitch
-from yehu_server.core.player.parameter_indices import BOW_LENGTH
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.record import PLAYER
 from yehu_server.core.stage.record import STAGE
 
@@ -80,15 +71,7 @@ SNAPSHOT = np.dtype(
 
 @native
 def snapshot(rig: Any, into: Any) -> None:
-    """Copy the present state of an instrument.
-
-    Parameters
-    ----------
-    rig : pointer to a record of dtype ``rig.RIG``
-    into : pointer to a record of dtype SNAPSHOT
-
-    Real time: safe.
-    """
+    """Copy the present state of a ``rig.RIG`` into a SNAPSHOT. Real time: safe."""
     m = record_at(rig, MODEL_AT, MODEL)
     s = record_at(rig, STATE_AT, STATE).motion
     c = record_at(rig, CONTROLS_AT, CONTROLS)
@@ -106,14 +89,14 @@ def snapshot(rig: Any, into: Any) -> None:
     else:
         out.peak, out.rms = t.peak, t.rms
     out.length = m.bridge_x
-    side = c.value[SIDE]
+    side = c.value[SLOTS.bow_side]
     string = 0 if side >= 0.0 else 1
     out.string = string if side != 0.0 else NO_STRING
-    out.speed = c.value[SPEED] * tremolo_factor(c) * (1.0 + c.drift[SPEED_DRIFT])
+    out.speed = c.value[SLOTS.bow_speed] * tremolo_factor(c) * (1.0 + c.drift[SPEED_DRIFT])
     out.force = abs(side) * bow_force(c, string, out.speed) * (1.0 + c.drift[FORCE_DRIFT])
-    out.beta = c.value[POSITION] * c.position_drift
+    out.beta = c.value[SLOTS.bow_position] * c.position_drift
     out.bow_x = c.bridge_x - out.beta * (c.bridge_x - c.sounding_from)
-    out.hair_place, out.hair_length = c.bow_displacement, p.value[BOW_LENGTH]
+    out.hair_place, out.hair_length = c.bow_displacement, p.value[PLAYING.bow_length]
     stop, held = 0.0, 0.0
     for j in range(MAX_FINGERS):
         out.finger_x[j] = c.value[FINGER_POSITION[j]]

@@ -1,33 +1,15 @@
 """Computes the samples of one instrument before the room: player, controls, model. Compiled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled, compiled_with_aliasing, native
 from yehu_server.compile.memory import carray
+from yehu_server.core.controls import ramps
 from yehu_server.core.controls.kernel_controls import advance_phases, is_still, write_controls
-from yehu_server.core.controls.ramps import (
-    TO_BODY,
-    TO_LIMITER,
-    advance_ramps,
-    amplitude,
-    has_new_strings,
-    level,
-)
 from yehu_server.core.controls.record import CHUNK, CONTROLS
-from yehu_server.core.controls.slots import (
-    BLEND,
-    BODY,
-    BRILLIANCE,
-    BRILLIANCE_FREQUENCY,
-    LIMITER,
-    LOSS,
-    STAGE_INPUTS,
-    TUNING,
-)
+from yehu_server.core.controls.slots import LOSS, SLOTS, STAGE_INPUTS, TUNING
 from yehu_server.core.engine.atomics import at, load_acquire, record_at, store_release
 from yehu_server.core.engine.mailbox import (
     APPLIED_AT_ONCE,
@@ -128,26 +110,26 @@ def retune(model: Array, state: Array, c: Any) -> None:
 @compiled_with_aliasing
 def write_row(c: Any, o: Any, n: int) -> bool:
     """Write row `n` of controls and gains; return whether the sound is faded out by then."""
-    advance_ramps(c)
+    ramps.advance_ramps(c)
     write_controls(c, o.controls[n])
-    gain, silenced = level(c), False
+    gain, silenced = ramps.level(c), False
     if c.silence_in > 0:
         c.silence_in -= 1
         gain *= c.silence_in / c.fade
         silenced = c.silence_in == 0
     o.gain[n] = gain
-    o.body[n] = amplitude(c, TO_BODY, c.value[BODY])
-    o.blend[n] = c.value[BLEND]
+    o.body[n] = ramps.amplitude(c, ramps.TO_BODY, c.value[SLOTS.body_gain])
+    o.blend[n] = c.value[SLOTS.body_blend]
     o.turned[n, 0], o.turned[n, 1] = c.turned[0], c.turned[1]
-    o.brilliance[n] = c.value[BRILLIANCE]
-    o.brilliance_frequency[n] = c.value[BRILLIANCE_FREQUENCY]
+    o.brilliance[n] = c.value[SLOTS.body_brilliance]
+    o.brilliance_frequency[n] = c.value[SLOTS.body_brilliance_frequency]
     return silenced
 
 
 @compiled_with_aliasing
 def write_stage_inputs(c: Any, sounded: Any, begin: int, end: int) -> None:
     """Write what the stage needs of some rows, in which the controls stand still."""
-    soft = amplitude(c, TO_LIMITER, c.value[LIMITER])
+    soft = ramps.amplitude(c, ramps.TO_LIMITER, c.value[SLOTS.output_limiter])
     for n in range(begin, end):
         sounded.soft[n] = soft
         for k in range(len(STAGE_INPUTS)):
@@ -156,10 +138,7 @@ def write_stage_inputs(c: Any, sounded: Any, begin: int, end: int) -> None:
 
 @compiled_with_aliasing
 def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
-    """Let frames pass in which nothing sounds, up to one that wakes the instrument.
-
-    Returns the row of that frame, or `end`.
-    """
+    """Pass silent frames, up to one that wakes the instrument; return its row, or `end`."""
     mail, o = record_at(rig, MAIL_AT, MAIL), record_at(rig, OUTPUT_AT, OUTPUT)
     heap = carray(at(rig, HEAP_AT), (HEAP,), WAITING)
     done = begin
@@ -187,9 +166,7 @@ def sleep(rig: Any, p: Any, c: Any, sounded: Any, begin: int, end: int) -> int:
 
 @native
 def sound(rig: Any, wanted: int, into: Any) -> None:
-    """Compute the next frames of an instrument, at most CHUNK, into a record of dtype SOUNDED.
-
-    The samples do not depend on how many are computed at a time.
+    """Compute at most CHUNK next frames of an instrument into a SOUNDED, however many at a time.
 
     Real time: safe; no allocation, no exception, every sample finite.
     """
@@ -220,7 +197,7 @@ def sound(rig: Any, wanted: int, into: Any) -> None:
                 update_player(p, c, at(rig, EAR_BUFFER_AT))
             silenced = write_row(c, o, done)
             write_stage_inputs(c, sounded, done, done + 1)
-            retuned = has_new_strings(c)
+            retuned = ramps.has_new_strings(c)
             c.frame += 1
             done += 1
             ends = c.frame & (WINDOW - 1) == 0
@@ -266,13 +243,7 @@ def write_output(rig: Any, dry: Array, first: int, start: int, end: int) -> None
 
 @native
 def sound_block(rig: Any, frames: int, sounded: Any) -> None:
-    """Compute the next frames of an instrument apart from the others, to be mixed later.
-
-    Parameters
-    ----------
-    sounded : pointer to records of dtype SOUNDED
-        Written: one for each CHUNK of the frames.
-    """
+    """Compute the next frames of one instrument, to be mixed later: a SOUNDED for each CHUNK."""
     mode = flush_denormals()
     done, chunk = 0, 0
     while done < frames:

@@ -1,7 +1,5 @@
 """The immutable configuration from which an instrument and its player are made."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any

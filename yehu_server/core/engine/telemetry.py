@@ -10,8 +10,6 @@ than a block calls back several times in a row. The loop follows the first callb
 request; how far the others run ahead of their time is the delay that messages need.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -120,15 +118,7 @@ def displacement(s: Any, i: int, place: float) -> float:
 
 @compiled
 def update_clock(t: Any, frame: int, started_ns: int, frames: int) -> None:
-    """Update the time of frames at the start of a callback. Real time: safe.
-
-    Parameters
-    ----------
-    frame, frames : int
-        First frame of the block, and its length.
-    started_ns : int
-        Time of the callback's start.
-    """
+    """Update the time of frames at the start (ns) of a callback. Real time: safe."""
     due = predicted_ns(t.loop, t.block)
     error = started_ns - due
     close_ns = IN_A_ROW * t.block * 1e9 / t.rate
@@ -171,15 +161,7 @@ def begin_request(t: Any, frame: int, due: int, error: int) -> bool:
 
 @compiled
 def account(t: Any, cpu_ns: int, flags: int) -> None:
-    """Count the load and under-runs of a callback. Real time: safe.
-
-    Parameters
-    ----------
-    cpu_ns : int
-        CPU time that it took.
-    flags : int
-        PortAudio's PaStreamCallbackFlags.
-    """
+    """Count the CPU time of a callback, and under-runs by PortAudio's flags. Real time: safe."""
     seconds = t.block / t.rate
     load = 1e-9 * cpu_ns / seconds
     t.load = one_pole(t.load, load, min(1.0, seconds / LOAD_MEMORY_S))

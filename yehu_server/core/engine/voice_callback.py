@@ -3,8 +3,6 @@
 The callback of an audio input calls it, in whatever process that is; a page calls it as well.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -98,14 +96,10 @@ def copy_commands(f: Any, commands: Any, found: int) -> int:
 def follow_input(
     sound: Any, _output: Any, frames: UInt64, _times: Any, _flags: UInt64, voice: Any
 ) -> Int32:
-    """Follow a block of an audio input of one channel (a PaStreamCallback).
+    """Follow float32 [shape=(frames,)] of an audio input, into a FOLLOWER (a PaStreamCallback).
 
-    Parameters
-    ----------
-    sound : pointer to float32 [shape=(frames,)]
-    voice : pointer to a record of dtype FOLLOWER, whose `rig` is the instrument's address
-
-    Real time: safe; no Python, no lock, no allocation, no exception.
+    Its `rig` is the instrument's address. Real time: safe; no Python, no lock, no allocation, no
+    exception.
     """
     mode = flush_denormals()
     now = monotonic_ns()

@@ -4,8 +4,6 @@ Where no machine code is kept or shipped for this level of processors and these 
 compiled, by processes of their own, which leave it in the cache.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache
 
@@ -13,23 +11,15 @@ from yehu_server.compile import machine_code
 from yehu_server.compile.cache_folder import IS_CACHED
 from yehu_server.compile.jit import IS_PLAIN, Native, with_called
 from yehu_server.compile.worker_processes import Progress, compile_apart
+from yehu_server.core.engine import native
 from yehu_server.core.engine.event_dispatch import index_notes
 from yehu_server.core.engine.mixing import mix_block
-from yehu_server.core.engine.native import (
-    callback,
-    frame_at,
-    post,
-    post_from,
-    read_meters,
-    read_reports,
-    taped,
-)
 from yehu_server.core.engine.sounding import sound_block
 from yehu_server.core.physics.kernel import derive
 
 CALLED = (
-    callback, sound_block, mix_block, derive, post, post_from, frame_at, read_meters, read_reports,
-    taped, index_notes,
+    native.callback, sound_block, mix_block, derive, native.post, native.post_from,
+    native.frame_at, native.read_meters, native.read_reports, native.taped, index_notes,
 )  # fmt: skip
 
 Compiled = Mapping[str, Sequence[Native]]

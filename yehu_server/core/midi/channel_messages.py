@@ -4,8 +4,6 @@ What each controller does is in ``control_changes``. Notes of the percussion cha
 only if it is chosen, or a member of an MPE zone.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -6,22 +6,19 @@ numbers, and nothing set up.
 Source of zones: MIDI Polyphonic Expression, version 1.0 (MIDI Association).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import CHANNEL_COUNT, CHANNELS_PER_PORT, NONE
 from yehu_server.core.midi.tables import MAX_BINDS
-from yehu_server.core.player.parameter_indices import INDEX
+from yehu_server.core.player.parameter_indices import PLAYING
 
 LOWER_MASTER, UPPER_MASTER = 0, 15  # in a port
 MAX_MEMBERS = 15
 MEMBER_BEND, MASTER_BEND = 48.0, 2.0  # semitones, until RPN 0 sets another range
 PERCUSSION_CHANNEL = 9  # channel 10, counted from 0
 ALL_BUT_PERCUSSION = -1  # of channels that are received
-BEND_RANGE = INDEX["/playing/bend_range"]
 
 
 @compiled_exactly
@@ -42,10 +39,7 @@ def begin_port(m: Any, t: Any, port: int) -> None:
 
 @compiled_exactly
 def configure_zone(m: Any, channel: int, members: int) -> bool:
-    """Act on an MPE configuration message; return whether the channel can be a master.
-
-    Where two zones overlap, the one configured last keeps its channels.
-    """
+    """Act on an MPE configuration, over older ones; return whether the channel can be a master."""
     port, own = channel // CHANNELS_PER_PORT, channel % CHANNELS_PER_PORT
     members = min(members, MAX_MEMBERS)
     room = max(MAX_MEMBERS - 1 - members, 0)  # left for the other zone, between the two masters
@@ -80,8 +74,8 @@ def is_in_zone(m: Any, channel: int, master: int) -> bool:
 @compiled_exactly
 def bend_range(m: Any, channel: int) -> float:
     """Pitch bend range of a channel (semitones)."""
-    usual = m.value[BEND_RANGE]
-    if m.is_held[BEND_RANGE] != 0 or not is_midi(channel):
+    usual = m.value[PLAYING.bend_range]
+    if m.is_held[PLAYING.bend_range] != 0 or not is_midi(channel):
         return float(usual)
     if not math.isnan(m.bend_range[channel]):
         return float(m.bend_range[channel])

@@ -4,8 +4,6 @@ Those with a meaning in the MIDI standard act by themselves: bank, sustain, all 
 all notes off, RPN and NRPN. Every other one moves what the mapping binds to it (``sources``).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native

@@ -1,7 +1,5 @@
 """From the position of a source to the value of a target, and back. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -104,15 +102,7 @@ def position_of(t: Any, bind: int, fraction: float) -> float:
 
 @compiled_exactly
 def picks_up(t: Any, bind: int, position: float, before: float, value: float) -> bool:
-    """Whether a source that moves to a position reaches or passes the target's value.
-
-    Parameters
-    ----------
-    before : float
-        The source's position before; NaN where it was never moved.
-    value : float
-        The target's present value.
-    """
+    """Whether a source moved from `before` (NaN: nowhere) reaches or passes a target's value."""
     here, there = fraction(t, bind, position), fraction_of_value(t, bind, value)
     if abs(here - there) <= PICKUP_WINDOW or t.lo[bind] == t.hi[bind]:
         return True

@@ -4,8 +4,6 @@ It knows what is held and kept, and passes each command on to the one player of 
 those of a section.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -28,9 +26,9 @@ from yehu_server.core.midi.section_players import (
 )
 from yehu_server.core.player.commands import BEGIN, END, EXPRESS, HOLD, RELEASE, STOP, WRITE
 from yehu_server.core.player.parameter_indices import (
+    ENGINE,
     IS_PLAYER_CONTROLLED,
     LOWER_BOUNDS,
-    SEED,
     UPPER_BOUNDS,
 )
 
@@ -58,12 +56,8 @@ def write(
 ) -> float:
     """Set a parameter; return the value it then has.
 
-    Parameters
-    ----------
-    glide_ms : float
-        Least time of the moves of bow and fingers that follow.
-    of_key : int
-        Where a section divides: the number of the held key that it is for, or NONE for all.
+    The moves of bow and fingers that follow take at least `glide_ms`. Where a section divides, it
+    is for the players of a held key by its number, or NONE for all.
     """
     value = in_range(index, value)
     if index == SECTION:
@@ -71,7 +65,7 @@ def write(
     if not IS_PLAYER_CONTROLLED[index]:
         if m.is_held[index] != 0 and not hold:
             value = m.value[index]
-            if index == SEED and m.players > 1:
+            if index == ENGINE.seed and m.players > 1:
                 begin_sequence(m, int(np.rint(value)))
             return value
         m.value[index] = value
@@ -91,7 +85,7 @@ def write(
         for own in (GAIN_INDEX, PAN_INDEX, DISTANCE_INDEX):
             own_kind = HOLD if m.is_held[own] != 0 else WRITE
             emit_to_all(m, frame, own_kind, own, m.value[own], 0.0, False, 0, 0.0)
-    elif index == SEED:
+    elif index == ENGINE.seed:
         begin_sequence(m, int(np.rint(value)))
     return value
 

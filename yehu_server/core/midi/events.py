@@ -19,8 +19,6 @@ the players of the part. Beside them:
 | TABLES_TO | number of the tables to use from now on | | |
 """
 
-from __future__ import annotations
-
 from yehu_server.core.player.commands import KINDS
 
 EVENTS = (

@@ -1,7 +1,5 @@
 """Interprets events: which commands each produces, for whoever plays the part. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -9,18 +7,9 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
+from yehu_server.core.midi import emit_commands
 from yehu_server.core.midi.channel_messages import disconnect, receive, system_reset
 from yehu_server.core.midi.control_changes import is_bound
-from yehu_server.core.midi.emit_commands import (
-    begin_key,
-    clear_held_keys,
-    end_key,
-    pass_on,
-    record_command,
-    release_held,
-    set_for_next_note,
-    write,
-)
 from yehu_server.core.midi.events import (
     CONTROL,
     DISCONNECT,
@@ -72,13 +61,7 @@ def interpret(
     """Interpret an event, given by its fields; the commands that it produces are in the record.
 
     An event of unknown kind, for an unknown parameter, or with a number that is not finite is
-    ignored.
-
-    Parameters
-    ----------
-    tables : pointer to TABLE_SLOTS records of dtype TABLES
-
-    Real time: safe; no allocation, no exception.
+    ignored. `tables` points to TABLE_SLOTS records. Real time: safe; no allocation, no exception.
     """
     all_tables = carray(tables, (TABLE_SLOTS,), TABLES)
     t = all_tables[m.tables]
@@ -146,26 +129,26 @@ def command(m: Any, frame: int, kind: int, index: int, value: float, other: floa
         is_valid = is_valid and 0 <= index < PARAMETER_COUNT
     if m.players == 1:  # as it is: it may be one of a replay
         if is_valid:
-            record_command(m, kind, index, value, other)
+            emit_commands.record_command(m, kind, index, value, other)
         emit(m, 0, frame, kind, index, value, other)
     elif not is_valid or not 0 <= kind < len(KINDS):
         return
     elif kind == EXPRESS:
-        set_for_next_note(m, frame, index, value)
+        emit_commands.set_for_next_note(m, frame, index, value)
     elif kind in (WRITE, HOLD):
-        write(m, frame, index, value, kind == HOLD, max(other, 0.0), NONE)
+        emit_commands.write(m, frame, index, value, kind == HOLD, max(other, 0.0), NONE)
     elif kind == BEGIN:
-        begin_key(m, frame, index, value, other, 0.0, 0)
+        emit_commands.begin_key(m, frame, index, value, other, 0.0, 0)
     elif kind == END:
-        end_key(m, frame, index, value, other != 0.0)
+        emit_commands.end_key(m, frame, index, value, other != 0.0)
     elif kind == SLIDE:
         slide_players(m, frame, value)
     else:
         if kind == RELEASE and value == 0.0:
-            release_held(m)
+            emit_commands.release_held(m)
         elif kind == STOP and value != 0.0:
-            clear_held_keys(m)
-        pass_on(m, frame, kind, index, value, other)
+            emit_commands.clear_held_keys(m)
+        emit_commands.pass_on(m, frame, kind, index, value, other)
 
 
 @compiled_exactly

@@ -1,9 +1,4 @@
-"""Ends notes together, unless a sustain pedal holds them. Compiled.
-
-The key that is left sounds again, with its own values.
-"""
-
-from __future__ import annotations
+"""Ends notes together, unless a sustain pedal holds them; the key left sounds again. Compiled."""
 
 from typing import Any
 

@@ -1,29 +1,21 @@
 """Notes of keys: their pitches, how they begin and end. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly, native
+from yehu_server.core.midi import note_ends
 from yehu_server.core.midi.channels import forget_channel, is_midi
 from yehu_server.core.midi.emit_commands import begin_key
-from yehu_server.core.midi.note_ends import (
-    end_notes,
-    express_key,
-    lift_pedal,
-    list_channel,
-    release_key,
-)
 from yehu_server.core.midi.part_keys import find_key
 from yehu_server.core.midi.record import CHANNEL_COUNT, CHANNELS_PER_PORT, NONE, Midi
 from yehu_server.core.midi.sources import set_directly
 from yehu_server.core.midi.tables import CLAMP, KEY_COUNT, NOTE, SKIP, VELOCITY, Tables
 from yehu_server.core.midi.values import keep_targets_of
 from yehu_server.core.player.fingering import OPEN_WITHIN
-from yehu_server.core.player.parameter_indices import ARTICULATION
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.params.articulations import ARTICULATIONS
 
 # -- pitches, which Python asks for as well, uncompiled (``playing.tuning``) -----------------------
@@ -31,10 +23,7 @@ from yehu_server.params.articulations import ARTICULATIONS
 
 @compiled_exactly
 def pitch_of_key(pitches: Any, key: float) -> float:
-    """The pitch of a key, of those of all keys; NaN for none.
-
-    A fractional key lies between the mapped keys below and above.
-    """
+    """The pitch of a key, between its neighbours where it is fractional; NaN for none."""
     if not 0.0 <= key <= KEY_COUNT - 1.0:  # also refuses NaN
         return math.nan
     below, above = math.floor(key), math.ceil(key)
@@ -81,15 +70,9 @@ def is_switch(t: Any, channel: int, key: float) -> bool:
 def note_on(
     m: Midi, t: Tables, frame: int, channel: int, key: float, velocity: float, pitch: float
 ) -> None:
-    """Begin a note; where the pitch is NaN, at that of the tuning.
-
-    Parameters
-    ----------
-    velocity : float
-        0 to 1; below 0 where the note was given its values before.
-    """
+    """Begin a note; at the tuning's pitch for NaN; of a velocity below 0 its values were given."""
     if is_switch(t, channel, key):
-        set_directly(m, frame, ARTICULATION, key - t.first_switch, 0.0)
+        set_directly(m, frame, PLAYING.articulation, key - t.first_switch, 0.0)
         return
     n = find_key(m, channel, key)
     if n != NONE:
@@ -122,7 +105,7 @@ def note_on(
         m.held_strike_number[n], m.held_velocity[n] = m.moves, velocity
     strike_number = m.moves
     if velocity >= 0.0:
-        express_key(m, t, frame, channel, key)
+        note_ends.express_key(m, t, frame, channel, key)
     begin_key(m, frame, channel, key, playable, velocity, strike_number)
 
 
@@ -136,14 +119,14 @@ def note_off(m: Any, t: Any, frame: int, channel: int, key: float) -> None:
     m.held_again[n] = NONE
     if again != NONE and again == frame:
         return  # the note-off of the note before, which some files write after the new note-on
-    release_key(m, t, n)
-    end_notes(m, t, frame)
+    note_ends.release_key(m, t, n)
+    note_ends.end_notes(m, t, frame)
 
 
 @compiled_exactly
 def end_channel(m: Any, t: Any, frame: int, channel: int) -> None:
     """End the notes of a channel and those its pedal holds, and forget its state."""
-    list_channel(m, channel)
-    end_notes(m, t, frame)
-    lift_pedal(m, t, frame, channel)
+    note_ends.list_channel(m, channel)
+    note_ends.end_notes(m, t, frame)
+    note_ends.lift_pedal(m, t, frame, channel)
     forget_channel(m, channel)

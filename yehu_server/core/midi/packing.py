@@ -1,9 +1,4 @@
-"""MIDI messages as numbers: the index of the event that carries one.
-
-Nothing of numba is loaded with it: the process that holds the MIDI inputs has to start soon.
-"""
-
-from __future__ import annotations
+"""MIDI messages as the index of an event; without numba, for a process that starts soon."""
 
 from collections.abc import Sequence
 
@@ -12,10 +7,7 @@ MAX_BYTES = 3
 
 
 def packed(message: Sequence[int], port: int = 0) -> int:
-    """The index of a MIDI message of 1 to 3 bytes: its bytes from the lowest, its length, its port.
-
-    Longer ones are packed as if they had no byte, and change nothing.
-    """
+    """A MIDI message as an index: 1 to 3 bytes (longer: none) from the lowest, length, port."""
     if len(message) > MAX_BYTES:
         return port << PORT_SHIFT
     index = len(message) << LENGTH_SHIFT | port << PORT_SHIFT

@@ -1,7 +1,5 @@
 """The keys that a part holds, in the order pressed; those that end together. Compiled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly

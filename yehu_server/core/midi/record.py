@@ -1,7 +1,5 @@
 """The state of a part: held keys, controllers, channels, and commands of the present event."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Annotated, Any
 
@@ -171,24 +169,12 @@ Midi = Annotated[Any, MIDI]
 
 
 def prepare_midi(
-    midi: Any,
-    rate: float,
-    values: Mapping[str, float],
-    *,
-    players: int = 1,
-    mpe: bool = False,
+    midi: Any, rate: float, values: Mapping[str, float], *, players: int = 1, mpe: bool = False
 ) -> None:
-    """Prepare a record of dtype MIDI [shape=(1,)], in place, for a part that was sent nothing.
+    """Prepare a MIDI record [shape=(1,)] in place, for a part that was sent nothing.
 
-    Parameters
-    ----------
-    rate : float, Hz
-    values : mapping
-        The value of every parameter, by address.
-    players : int
-        Number of instruments that play the part.
-    mpe : bool
-        Whether ports start as MPE zones of all channels.
+    `rate` (Hz), all values by address, the number of players, and whether ports start as MPE zones
+    of all channels.
     """
     midi[:] = np.zeros(1, MIDI)
     m = midi[0]

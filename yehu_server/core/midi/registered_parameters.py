@@ -4,13 +4,12 @@ Registered are the bend range, the tuning of a channel and MPE's configuration; 
 of a mapping. The bend range that a part begins with is a row of ``params.table``.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
+from yehu_server.core.midi import sources
 from yehu_server.core.midi.channels import (
     bend_range,
     configure_zone,
@@ -21,14 +20,8 @@ from yehu_server.core.midi.channels import (
 from yehu_server.core.midi.emit_commands import in_range
 from yehu_server.core.midi.notes import end_channel
 from yehu_server.core.midi.record import CHANNELS_PER_PORT, NONE
-from yehu_server.core.midi.sources import (
-    move_source_coarse,
-    move_source_fine,
-    step_source,
-    write_targets,
-)
 from yehu_server.core.midi.tables import BEND, NRPN
-from yehu_server.core.player.parameter_indices import INDEX
+from yehu_server.core.player.parameter_indices import PLAYING
 
 # Control changes that select a parameter, and enter its value.
 DATA_ENTRY, DATA_ENTRY_FINE = 6, 38
@@ -36,7 +29,6 @@ INCREMENT, DECREMENT = 96, 97
 NRPN_FINE, NRPN_COARSE, RPN_FINE, RPN_COARSE = 98, 99, 100, 101
 BEND_RANGE, FINE_TUNING, COARSE_TUNING, MPE_CONFIGURATION = 0, 1, 2, 6  # registered parameters
 CENTRE, FINE_STEPS = 64, 8192.0  # no tuning, of 7 bits; and the steps of a semitone, of 14
-BEND_RANGE_INDEX = INDEX["/playing/bend_range"]
 
 
 @compiled_exactly
@@ -62,11 +54,11 @@ def enter_data(m: Any, t: Any, frame: int, channel: int, control: int, value: in
     if m.is_registered[channel] == 0:
         source = NRPN + number
         if control == DATA_ENTRY:
-            move_source_coarse(m, t, frame, source, channel, value)
+            sources.move_source_coarse(m, t, frame, source, channel, value)
         elif control == DATA_ENTRY_FINE:
-            move_source_fine(m, t, frame, source, channel, value)
+            sources.move_source_fine(m, t, frame, source, channel, value)
         else:
-            step_source(m, t, frame, source, channel, 1.0 if control == INCREMENT else -1.0)
+            sources.step_source(m, t, frame, source, channel, 1.0 if control == INCREMENT else -1.0)
     elif number == MPE_CONFIGURATION and control == DATA_ENTRY:
         set_zone(m, t, frame, channel, value)
     elif number == BEND_RANGE:
@@ -107,7 +99,7 @@ def set_bend_range(m: Any, t: Any, frame: int, channel: int, control: int, value
         cents = min(value, 99)
     else:
         semitones += 1 if control == INCREMENT else -1
-    found = in_range(BEND_RANGE_INDEX, semitones + cents / 100.0)
+    found = in_range(PLAYING.bend_range, semitones + cents / 100.0)
     m.bend_range[channel] = found
     master = master_of(m, channel)
     if master != NONE:
@@ -117,7 +109,7 @@ def set_bend_range(m: Any, t: Any, frame: int, channel: int, control: int, value
         ):
             if master_of(m, member) == master:
                 m.bend_range[member] = found
-    write_targets(m, t, frame, BEND, channel, False)
+    sources.write_targets(m, t, frame, BEND, channel, False)
 
 
 @compiled_exactly

@@ -4,8 +4,6 @@ A move stays where its source is still bound. A parameter whose start value diff
 one, unless it was moved since.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Resets and ends the moves of controllers: RP-015, a port that is gone, a panic. Compiled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native

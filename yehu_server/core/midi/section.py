@@ -7,8 +7,6 @@ one line is played by all. Where a note of a chord ends, its players rest until 
 is theirs.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

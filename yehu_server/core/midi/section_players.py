@@ -6,8 +6,6 @@ counted from the earliest, which is on time: nobody is early, and nobody later t
 How their instruments differ is in ``playing.section_instruments``. Compiled.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -17,11 +15,11 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.midi.record import MAX_ONSETS
 from yehu_server.core.physics.elementary import log10, pseudorandom
 from yehu_server.core.player.parameter_indices import (
+    ENGINE,
     INDEX,
     LOWER_BOUNDS,
-    SEED,
+    PLAYING,
     UPPER_BOUNDS,
-    VARIATION,
 )
 
 OWN_SEED, GAIN, PAN, DISTANCE = "/engine/seed", "/output/gain", "/room/pan", "/room/distance"
@@ -39,18 +37,9 @@ NEIGHBOUR, TO_EITHER_SIDE = 0.12, 0.35
 
 @compiled_exactly
 def own_value(index: int, value: float, number: int, players: int) -> float:
-    """The value that a player has of a parameter, of what their part has.
+    """A player's value of a parameter, of what their part has.
 
-    All of them together are as loud as one alone.
-
-    Parameters
-    ----------
-    index : int
-        Of the parameter; -1 for none.
-    number : int
-        The player, counted from 0.
-    players : int
-        How many of them play.
+    All together are as loud as one alone. `index` is -1 for none; players count from 0.
     """
     if index == SEED_INDEX:
         return float((int(np.rint(value)) + SEED_STEP * number) % SEED_COUNT)
@@ -98,7 +87,7 @@ def begin_sequence(m: Any, seed: int) -> None:
 def plan_onset(m: Any, frame: int) -> None:
     """Find how many frames each is late for an onset planned at a frame (``late``); note it."""
     if m.stream == 0:
-        begin_sequence(m, int(m.value[SEED]))
+        begin_sequence(m, int(m.value[ENGINE.seed]))
     find_lateness(m, frame)
     n = m.onsets % MAX_ONSETS
     m.onset_at[n] = frame
@@ -112,7 +101,7 @@ def plan_onset(m: Any, frame: int) -> None:
 def plan_release(m: Any, frame: int) -> None:
     """Find how many frames each is late for the end of a note: as for the onset that follows."""
     if m.stream == 0:
-        begin_sequence(m, int(m.value[SEED]))
+        begin_sequence(m, int(m.value[ENGINE.seed]))
     for onset in range(max(0, m.onsets - MAX_ONSETS), m.onsets):
         n = onset % MAX_ONSETS
         if m.onset_at[n] >= frame:
@@ -132,7 +121,7 @@ def find_lateness(m: Any, frame: int) -> None:
     for i in range(m.playing):
         m.before[i] = 1e3 * m.onset_late[n, i] / m.rate if m.onsets > 0 else 0.0
         total += m.before[i]
-    error = min(ERROR_MS * m.value[VARIATION], MAX_ERROR_MS)
+    error = min(ERROR_MS * m.value[PLAYING.variation], MAX_ERROR_MS)
     first = math.inf
     for i in range(m.playing):
         own = m.before[i]

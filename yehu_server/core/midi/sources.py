@@ -5,8 +5,6 @@ notes, or all notes (``channels.moves_all``): while one of them sounds, and afte
 another channel begins.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -18,10 +16,7 @@ from yehu_server.core.midi.curves import from_unit, picks_up, to_unit
 from yehu_server.core.midi.emit_commands import write
 from yehu_server.core.midi.record import NONE, Midi
 from yehu_server.core.midi.section import sounds
-from yehu_server.core.midi.tables import (
-    POLY_PRESSURE,
-    Tables,
-)
+from yehu_server.core.midi.tables import POLY_PRESSURE, Tables
 from yehu_server.core.midi.values import (
     NO_KEY,
     STEPS,
@@ -40,13 +35,7 @@ FINE_BITS, MAX_14_BITS = 7, 16383.0
 
 @native
 def write_targets(m: Midi, t: Tables, frame: int, source: int, channel: int, glides: bool) -> None:
-    """Write the targets of a source that was moved on a channel.
-
-    Parameters
-    ----------
-    glides : bool
-        Whether the binds that receive it give their smoothing.
-    """
+    """Write the targets of a source moved on a channel; with their smoothing if it `glides`."""
     keep_targets_of(m, t, source)
     if m.sounding == NONE:
         if m.has_last != 0:

@@ -4,8 +4,6 @@ All are float64, so that any program can write them; ``playing.tables`` does for
 sources and curves are below.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Of several sources of one target the one moved last counts; a direct write count
 on a channel affect the notes of that channel, or all notes (``channels.moves_all``).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly, native

@@ -5,8 +5,6 @@ are taken after tension, bridge and fingers are eliminated, so that they also ho
 where the bow shares nodes with the bridge or a finger.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.compile.jit import compiled
@@ -43,15 +41,9 @@ def friction_bound(
 ) -> float:
     """Return a number that is below 1 where the friction equation has one solution only.
 
-    For the worst case, the bow exactly on a node. It is a sufficient bound, as long as bristles
-    are not stretched far beyond what the bow force sustains. Source: docs/physics.md.
-
-    Parameters
-    ----------
-    refined : record of dtype REFINED
-        Of an instrument with torsion, which makes the string yield more.
-    compliance : float, m/N
-        Of a modal string, in the place of a node's.
+    It is sufficient, for the bow on a node, as long as bristles are stretched no farther than the
+    bow force sustains (docs/physics.md). With torsion (`refined`) the string yields more;
+    `compliance` (m/N) is that of a modal string, in the place of a node's.
     """
     k = model["k"]
     yielding = 0.0 if refined is None else largest_yielding(refined)

@@ -5,8 +5,6 @@ cubic; C_q carries 4 k^2; the modes' stiffness is pre-warped so that each rings 
 frequency (decisions/0002).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -22,13 +20,7 @@ from yehu_server.errors import ParameterError
 
 
 def prepare_bridge(model: Any, quantities: Quantities) -> None:
-    """Write the bridge's coefficients into `model`; the strings' must be there.
-
-    Raises
-    ------
-    ParameterError
-        Where the body has too many modes, or one above Nyquist.
-    """
+    """Write the bridge's coefficients, after the strings'; ParameterError for too many modes."""
     k = model["k"]
     body = quantities.body
     modes = len(body.mass)

@@ -12,8 +12,6 @@ as printed; elsewhere they do not, and contacts are solved jointly (decisions/00
 Derivation: docs/derivation.md, section 3.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.compile.jit import compiled
@@ -40,14 +38,11 @@ Response = tuple[float, float, float, float]
 
 @compiled
 def place_contacts(model: Model, c: Contacts, control: Array, bowed_string: int) -> bool:
-    """Move bow and fingers to the places in a row of controls.
+    """Move bow and fingers to the places in a row of controls; only what moved is worked out anew.
 
-    The bow keeps one node away from the bridge and from the loop, a finger one
-    node away from the loop, and it goes no farther than to the bridge. Only what moved is worked
-    out anew.
-    Real time: safe.
-
-    Returns whether contacts may share other nodes now: a finger moved, or the bow touches others.
+    The bow keeps one node away from the bridge and from the loop, a finger one node away from the
+    loop, and it goes no farther than to the bridge. Returns whether contacts may share other nodes
+    now: a finger moved, or the bow touches others. Real time: safe.
     """
     moved = False
     x_b = control[X_B]

@@ -4,8 +4,6 @@ Nothing here is computed: derived coefficients live where they are used
 (`grid`, `string`, `bridge`, `bow`, `finger`, `radiation`).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -153,15 +151,7 @@ class Body:
 
 
 def read_body(path: Path = BODY_FILE) -> Body:
-    """Read a body file.
-
-    Source: the format is described in docs/physics.md; figures [YehuData].
-
-    Raises
-    ------
-    ParameterError
-        When it is missing, malformed, or not passive or stable.
-    """
+    """Read a body file (docs/physics.md, [YehuData]); raises ParameterError as `check_body`."""
     table = Document(path, "a body file").read(path).json()
     radiation = table.table("radiation")
     modes = table.tables("bridge_modes", 1)
@@ -186,13 +176,7 @@ def _sections(value: Any) -> tuple[tuple[float, float, float, float], ...]:
 
 
 def check_body(body: Body) -> None:
-    """Refuse a body that is not passive or not stable.
-
-    Raises
-    ------
-    ParameterError
-        Where it is not.
-    """
+    """Raise ParameterError for a body that is not passive or not stable."""
     figures = (
         *body.omega,
         *body.mass,
@@ -340,13 +324,7 @@ def instrument_file(path: Path) -> Path:
 
 
 def read_quantities(path: Path) -> Quantities:
-    """Read an instrument file (TOML, or JSON by its ending) of quantities to change.
-
-    Raises
-    ------
-    ParameterError
-        Naming the file.
-    """
+    """Read an instrument file (TOML, or JSON by its ending); a ParameterError names it."""
     return _read_quantities(path, 0)
 
 

@@ -7,8 +7,6 @@ any number, and give the same bits compiled and as Python. Polynomials are summe
 terms can be computed in parallel.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -20,10 +18,7 @@ from yehu_server.compile.jit import arithmetic, compiled
 
 @compiled
 def pseudorandom(number: int) -> float:
-    """The pseudorandom number, -1 to 1, that belongs to an integer: a hash of it.
-
-    Source: [SplitMix], its output function.
-    """
+    """The pseudorandom number, -1 to 1, of an integer, as [SplitMix] has it."""
     x = np.uint64(number) * np.uint64(0x9E3779B97F4A7C15)
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
@@ -71,10 +66,7 @@ sincospi = arithmetic(sincospi)
 
 
 def exp2(x: float) -> float:
-    """Return 2 to the power of `x`, clamped to -1000..1000, to 4e-16.
-
-    Real time: safe.
-    """
+    """Return 2 to the power of `x`, clamped to -1000..1000, to 4e-16. Real time: safe."""
     if math.isnan(x):  # NaN cannot be rounded
         return x
     x = min(max(x, MIN_EXPONENT), MAX_EXPONENT)

@@ -14,8 +14,6 @@ is dense, and contacts are eliminated one after the other (decisions/0003).
 Derivation: docs/derivation.md, sections 4 and 5.
 """
 
-from __future__ import annotations
-
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.contacts import (
     Response,
@@ -92,12 +90,8 @@ def eliminate_fingers(
 ) -> tuple[float, float]:
     """Eliminate the forces of all fingers, until only the bow's is unknown.
 
-    Returns
-    -------
-    displacement : float, m
-        By how much the fingers move the string under the bow, against the bow's force.
-    compliance : float, m/N
-        By how much they lower the compliance under the bow.
+    Returns by how much they move the string under the bow, against its force (m), and lower its
+    compliance there (m/N).
     """
     if c.is_chain:
         return eliminate_chain(c, w, near, Q, bow_response)

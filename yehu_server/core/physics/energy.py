@@ -5,8 +5,6 @@ and displacements belong together; it is blind to the friction law and to conver
 residual of friction shows, and to g and theta, which other tests hold.
 """
 
-from __future__ import annotations
-
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.bow import contact_velocity
 from yehu_server.core.physics.friction import power_off_law

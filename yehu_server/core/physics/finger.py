@@ -6,8 +6,6 @@ energy so given up is recorded in the ledger (it makes case 2 of eq. (34) unreac
 without press returns to its rest height.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -68,12 +66,8 @@ def gradient(model: Model, eta: float) -> float:
 def limited_gradient(ghat: float, Psi: float, travel: float) -> float:
     """Return g = theta ghat of eqs. (33) and (34).
 
-    Parameters
-    ----------
-    Psi : float, sqrt(J)
-        Not negative, and zero where nothing is penetrated.
-    travel : float, m
-        eta* - eta^{n-1}, the change of penetration over two steps without the fingers' forces.
+    Psi (sqrt(J)) is not negative, and zero where nothing is penetrated; `travel` (m) is eta* -
+    eta^{n-1}, the change of penetration over two steps without the fingers' forces.
     """
     if 4.0 * Psi + ghat * travel < 0.0:
         return -4.0 * Psi / travel

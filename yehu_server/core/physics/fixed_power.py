@@ -6,8 +6,6 @@ of one, part = midpoint (1 + t) with a t so small that a few terms of the binomi
     factor x^p = factor 2^(p e) midpoint^p (1 + p t + p (p - 1)/2 t^2 + ...).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.compile.jit import compiled

@@ -6,8 +6,6 @@ bracket (decisions/0001).
 Derivation: docs/derivation.md, section 6.
 """
 
-from __future__ import annotations
-
 import math
 
 from yehu_server.compile.jit import compiled
@@ -131,15 +129,8 @@ def solve_elastic(
     """Solve friction as if bristles did not slip (chi = 0).
 
     That is linear except for epsilon_1(v_r), which takes one more step where it decreases slightly.
-
-    Returns
-    -------
-    is_elastic, is_exact : bool
-        Whether bristles do not slip at the linear solution, and whether one step was enough.
-    f_b, z_bar, v_r : float, N, m, m/s
-        The solution, where it is exact.
-    start : float, m/s
-        The linear solution.
+    Returns whether bristles do not slip there and one step was enough, then f_b (N), z_bar (m), v_r
+    and the linear solution (m/s).
     """
     half_k = 0.5 * m.k
     per_mobility = 1.0 / mobility

@@ -12,8 +12,6 @@ Differs: [Yehu] has bristles. Source: [Friedlander]; [McIntyre]. Derivation: doc
 section 10.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -24,12 +22,10 @@ from yehu_server.errors import ParameterError
 
 
 def prepare_friction(refined: Any, quantities: Quantities) -> None:
-    """Write the law of friction, where it is another than the plain kernel's, into `refined`.
+    """Write another law of friction than the plain kernel's into `refined`.
 
-    Raises
-    ------
-    ParameterError
-        Where hair of some width would have a law with several solutions at each of its points.
+    Raises ParameterError where hair of some width would have several solutions at each of its
+    points.
     """
     bow = quantities.bow
     refined["is_hyperbolic"], refined["epsilon_2"] = bow.friction == "hyperbolic", bow.epsilon_2
@@ -39,13 +35,7 @@ def prepare_friction(refined: Any, quantities: Quantities) -> None:
 
 @compiled
 def curve_force(m: Model, F_N: float, f_b: float, v_r: float) -> float:
-    """Return the friction force (N) of the curve: `f_b`, within its bound, where the string sticks.
-
-    Parameters
-    ----------
-    v_r : float, m/s
-        As solved: exactly zero where the string sticks.
-    """
+    """The friction force (N) of the curve: `f_b` within its bound at v_r = 0, where it sticks."""
     if v_r == 0.0:
         return max(-m.mu_S * F_N, min(f_b, m.mu_S * F_N))
     mu = m.mu_C + (m.mu_S - m.mu_C) * m.v_s / (m.v_s + abs(v_r))

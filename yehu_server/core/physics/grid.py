@@ -5,8 +5,6 @@ N are the fixed ends: their weights are zero, so that J stays the transpose of I
 Source: [Bilbao] section 5.2.4; [Yehu] eq. (28).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -37,13 +35,7 @@ def least_spacing(string: StringQuantities, k: float, headroom: float = 1.0) -> 
 
 
 def intervals(string: StringQuantities, k: float, headroom: float = 1.0) -> int:
-    """Return N, the number of grid intervals of a string; its spacing is then L/N.
-
-    Raises
-    ------
-    ParameterError
-        Where the string gets too few or too many nodes.
-    """
+    """The number N of a string's grid intervals of L/N; ParameterError for too few or too many."""
     N = math.floor(string.L / least_spacing(string, k, headroom))
     if not 12 <= N <= MAX_INTERVALS:
         raise ParameterError(
@@ -54,13 +46,7 @@ def intervals(string: StringQuantities, k: float, headroom: float = 1.0) -> int:
 
 
 def check_rate(rate: float) -> None:
-    """Refuse a sample rate (Hz) outside 22,050 to 192,000.
-
-    Raises
-    ------
-    ParameterError
-        With the range.
-    """
+    """Raise ParameterError for a sample rate (Hz) outside 22,050 to 192,000."""
     if not MIN_RATE <= rate <= MAX_RATE:
         raise ParameterError(
             f"sample rate: {rate} Hz is not within {MIN_RATE:g} to {MAX_RATE:g} Hz"

@@ -18,8 +18,6 @@ Differs: [Yehu] has one point.
 Source: [Pitteroff]; [Maestre]. Derivation: docs/derivation.md, section 9.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -82,9 +80,7 @@ def point_velocity(m: Model, s: Motion, c: Contacts, t: Refined, e: int, next_: 
 
 @compiled
 def solve_points(m: Model, state: State, t: Refined, string: int, F_N: float) -> int:
-    """Solve the friction of all points; advance their bristles.
-
-    Returns the number of evaluations of the law.
+    """Solve the friction of all points, advance bristles; return how often the law was evaluated.
 
     Real time: safe; at most MAX_EVALUATIONS, and those of two solves of each point.
     """

@@ -12,8 +12,6 @@ without pivoting. Friction comes last: what is left for its rows is what the bow
 Derivation: docs/derivation.md, section 11.
 """
 
-from __future__ import annotations
-
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.grid import interpolate, overlap, spread
 from yehu_server.core.physics.layout import BOW, STENCIL, STRINGS

@@ -6,45 +6,13 @@ the fingers' forces follow, and all forces move what they act on. docs/derivatio
 part.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled, native
-from yehu_server.core.physics.bow import (
-    advance_hair,
-    choose_string,
-    contact_velocity,
-    friction_limit,
-    prepare_bow,
-)
-from yehu_server.core.physics.bridge import (
-    advance_bridge,
-    eliminate_tension_and_bridge,
-    move_modes,
-    place_bridge,
-    prepare_bridge,
-    set_bridge_compliance,
-)
-from yehu_server.core.physics.contacts import (
-    Response,
-    compliance,
-    free_displacement,
-    move_strings,
-    place_contacts,
-    response,
-)
+from yehu_server.core.physics import bow, bridge, contacts, elimination
 from yehu_server.core.physics.default_quantities import Quantities
-from yehu_server.core.physics.elimination import (
-    Symmetric,
-    back_substitute_fingers,
-    eliminate_fingers,
-    factor_fingers,
-    find_shared_nodes,
-    find_travel,
-)
 from yehu_server.core.physics.finger import advance_fingers, limit_gradients, prepare_fingers
 from yehu_server.core.physics.friction import Tangent, solve_friction
 from yehu_server.core.physics.grid import interpolate
@@ -89,14 +57,9 @@ LOST_SIZE = 1e6  # N, m/s, m: far above any value of a sound state
 
 
 def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
-    """Derive every coefficient of the model for one sample rate.
+    """Derive every coefficient for one sample rate: ndarray [shape=(1,), dtype=layout.MODEL].
 
-    Returns: ndarray [shape=(1,), dtype=layout.MODEL].
-
-    Raises
-    ------
-    ParameterError
-        Where the quantities make no stable model at this rate.
+    Raises ParameterError where the quantities make no stable model at this rate.
     """
     if not 1 <= fingers <= MAX_FINGERS:
         raise ParameterError(f"fingers: 1 to {MAX_FINGERS}, not {fingers}")
@@ -106,8 +69,8 @@ def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
     record["fingers"] = fingers
     prepare_strings(record, quantities)
     prepare_tension(record, quantities)
-    prepare_bridge(record, quantities)
-    prepare_bow(record, quantities)
+    bridge.prepare_bridge(record, quantities)
+    bow.prepare_bow(record, quantities)
     prepare_heat(record, quantities)
     prepare_fingers(record, quantities)
     prepare_radiation(record, quantities.body)
@@ -117,24 +80,16 @@ def prepare(quantities: Quantities, rate: float, fingers: int = 1) -> Any:
 
 @native
 def derive(m: Annotated[Model, MODEL]) -> None:
-    """Write what follows from quantities and grids: as compiled code does when a string is retuned.
-
-    Parameters
-    ----------
-    m : record of dtype MODEL, otherwise prepared
-    """
-    place_bridge(m)
+    """Write what follows from quantities and grids into a MODEL: also when a string is retuned."""
+    bridge.place_bridge(m)
     for i in range(STRINGS):
         set_string_weights(m, i, m.T[i], m.sigma_0[i], m.sigma_1[i])
         set_tension_gain(m, i)
-    set_bridge_compliance(m)
+    bridge.set_bridge_compliance(m)
 
 
 def at_rest(model: Any) -> Any:
-    """An instrument at rest, its fingers at their rest height.
-
-    Returns: ndarray [shape=(1,), dtype=layout.STATE].
-    """
+    """An instrument at rest, its fingers up: ndarray [shape=(1,), dtype=layout.STATE]."""
     state = new_record(STATE)
     state["motion"]["U"][:] = model["rest_height"][0]
     return state
@@ -153,7 +108,7 @@ def retune(
     m = model[0]
     set_string_weights(m, i, T, sigma_0, min(sigma_1, max_stable_sigma_1(m, i, T)))
     set_tension_gain(m, i)
-    set_bridge_compliance(m)
+    bridge.set_bridge_compliance(m)
     state[0].contacts.placed = 0  # their compliances depend on the tension
 
 
@@ -213,24 +168,24 @@ def step(m: Model, state: State, control: Array, next_: int, now: int, prev: int
     # Strings and modes without forces, eqs. (58) and (42), then tied together, eqs. (43)-(45).
     advance_strings(m, s, w, u_next, u, u_prev)
     pluck(m, s, c, w, control, u_next)
-    q_sum = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
-    eliminate_tension_and_bridge(m, s, w, u_next, q_sum)
+    q_sum = bridge.advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
+    bridge.eliminate_tension_and_bridge(m, s, w, u_next, q_sum)
 
     # Places of the contacts; fingers without forces, eq. (58). Independent of the strings' update.
-    string, bowed = choose_string(m, s, c, w, control[F_N])
-    moved, were_near = place_contacts(m, c, control, string), c.candidate_bits
+    string, bowed = bow.choose_string(m, s, c, w, control[F_N])
+    moved, were_near = contacts.place_contacts(m, c, control, string), c.candidate_bits
     near = advance_fingers(m, s, c, w, control, next_, now, prev)
     if moved or c.candidate_bits != were_near:
-        find_shared_nodes(m, c, near)
-    Q = factor_fingers(m, s, c, w, near)
+        elimination.find_shared_nodes(m, c, near)
+    Q = elimination.factor_fingers(m, s, c, w, near)
 
     # The bow, eqs. (46)-(49), and the fingers, eqs. (33)-(36).
     w.Delta_u_at[BOW] = interpolate(s.Delta_u[string], c.first[BOW], c.weights[BOW])
-    bow_response = response(c, w, BOW)
-    advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
-    u_b = free_displacement(c, w, u_next, BOW)
-    free = contact_velocity(m, c, u_b, u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
-    mobility = 0.5 * m.rate * (compliance(m, c, w, BOW, BOW, bow_response) + m.C_h)
+    bow_response = contacts.response(c, w, BOW)
+    bow.advance_hair(m, s.zeta[next_], s.zeta[now], s.zeta[prev])
+    u_b = contacts.free_displacement(c, w, u_next, BOW)
+    free = bow.contact_velocity(m, c, u_b, u_prev, s.zeta[next_], s.zeta[prev]) - control[V_B]
+    mobility = 0.5 * m.rate * (contacts.compliance(m, c, w, BOW, BOW, bow_response) + m.C_h)
     for i in range(STRINGS):
         w.tau_per_newton[i], w.f_c_per_newton[i] = bow_response[i], bow_response[STRINGS + i]
     F_N_now = abs(control[F_N]) * grip(m, s, c, control, now)
@@ -239,8 +194,8 @@ def step(m: Model, state: State, control: Array, next_: int, now: int, prev: int
 
     # All that the forces move: eqs. (30), (59), (60).
     s.zeta[next_, string] -= m.C_h * s.f_b
-    move_strings(m, s, c, w, u_next, near, bowed)
-    w.bridge_travel = move_modes(m, s.q[next_], s.q[prev], w.f_c)
+    contacts.move_strings(m, s, c, w, u_next, near, bowed)
+    w.bridge_travel = bridge.move_modes(m, s.q[next_], s.q[prev], w.f_c)
     for i in range(STRINGS):
         support(u_next[i], m.N[i])
 
@@ -252,8 +207,8 @@ def solve_contacts(
     u_next: Array,
     next_: int,
     near: int,
-    Q: Symmetric,
-    bow_response: Response,
+    Q: elimination.Symmetric,
+    bow_response: contacts.Response,
     bowed: bool,
     F_N: float,
     free: float,
@@ -282,15 +237,17 @@ def solve_contacts(
     if near > 0:
         # theta depends on the friction force, and that on the contacts. Mostly theta is 1 for
         # any friction; else it is found with the friction on a string that no finger touches.
-        f_b, margin = (s.f_b, abs(s.f_b) + friction_limit(m, F_N)) if bowed else (0.0, 0.0)
-        if find_travel(m, s, c, w, u_next, next_, near, bow_response, f_b, margin):
+        f_b, margin = (s.f_b, abs(s.f_b) + bow.friction_limit(m, F_N)) if bowed else (0.0, 0.0)
+        if elimination.find_travel(m, s, c, w, u_next, next_, near, bow_response, f_b, margin):
             if bowed:
                 f_b, _, _, tangent, iterations, _ = solve_friction(
                     free, mobility, s.z[string], F_N, mu_S, tangent, m, string
                 )
             limit_gradients(s, c, w, near, f_b)
-            Q = factor_fingers(m, s, c, w, near)
-        displacement, compliance_reduction = eliminate_fingers(m, s, c, w, near, Q, bow_response)
+            Q = elimination.factor_fingers(m, s, c, w, near)
+        displacement, compliance_reduction = elimination.eliminate_fingers(
+            m, s, c, w, near, Q, bow_response
+        )
         free -= 0.5 * m.rate * displacement
         mobility -= 0.5 * m.rate * compliance_reduction
         f_b, v_r = 0.0, free
@@ -302,7 +259,7 @@ def solve_contacts(
     for i in range(STRINGS):
         w.tau[i] += w.tau_per_newton[i] * f_b
         w.f_c[i] += w.f_c_per_newton[i] * f_b
-    back_substitute_fingers(m, s, c, w, next_, near, f_b)
+    elimination.back_substitute_fingers(m, s, c, w, next_, near, f_b)
 
     w.z_bar, w.r, w.F_N, w.mu_S = 0.0, 0.0, F_N, mu_S
     if bowed:  # z is then at n + 1/2

@@ -11,8 +11,6 @@ Indices are unsigned: a negative one costs a comparison at every use, and keeps 
 becoming vectors.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -42,10 +40,7 @@ LINE_BYTES = 64  # of the processor's cache: vectors within one are read and wri
 
 
 def lined_up(fields: list[Any]) -> np.dtype[Any]:
-    """A record in which nested records, and the first node of each string, begin a cache line.
-
-    They do if the record itself does.
-    """
+    """A record whose nested records, and first nodes of strings, begin cache lines, if it does."""
     kinds = {name: kind for name, (kind, *_) in (np.dtype(fields, align=True).fields or {}).items()}
     offsets, end = [], 0
     for kind in kinds.values():

@@ -8,8 +8,6 @@ some 100 to 300 Hz: modes are about as far apart in a small shell. `Unverified:`
 measured in several directions.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

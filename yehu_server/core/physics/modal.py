@@ -4,19 +4,11 @@ All forces are rows of the joint system (joint.py): tension, bridge, felt, finge
 each point of the hair. docs/derivation.md, section 12.
 """
 
-from __future__ import annotations
-
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics import kernel, refined
+from yehu_server.core.physics import finger, kernel, refined, torsion
 from yehu_server.core.physics.bow import advance_hair, choose_string
 from yehu_server.core.physics.bridge import advance_bridge, move_modes
 from yehu_server.core.physics.contacts import place_contacts
-from yehu_server.core.physics.finger import (
-    advance_contact,
-    advance_fingers,
-    contact_stiffness,
-    limited_gradient,
-)
 from yehu_server.core.physics.hair_width import lift_points, place_points, solve_points, warm_points
 from yehu_server.core.physics.joint import NO_FORCE, back_substitute, eliminate
 from yehu_server.core.physics.layout import (
@@ -47,13 +39,6 @@ from yehu_server.core.physics.modal_string import (
 )
 from yehu_server.core.physics.records import Array, Contacts, Modal, Model, Motion, Records, State
 from yehu_server.core.physics.rosin_texture import grip
-from yehu_server.core.physics.torsion import (
-    advance_torsion,
-    move_twist,
-    read_twist,
-    twist_travel,
-    yield_to_point,
-)
 
 BRIDGE_ROW = STRINGS  # after both tensions
 FELT_ROW = 2 * STRINGS
@@ -94,8 +79,8 @@ def step(m: Model, state: State, d: Modal, control: Array, next_: int, now: int,
     advance_partials(d, next_, now, prev)
     pluck(m, s, c, d, control, next_, now, prev)
     read_all(d, s, next_)
-    near = advance_fingers(m, s, c, w, control, next_, now, prev)
-    advance_torsion(m, t, c, w, near, next_, now, prev)
+    near = finger.advance_fingers(m, s, c, w, control, next_, now, prev)
+    torsion.advance_torsion(m, t, c, w, near, next_, now, prev)
     q_sum = advance_bridge(m, s.q[next_], s.q[now], s.q[prev], control[F_HAMMER])
 
     add_strings(m, s, d, q_sum, next_, prev)
@@ -108,8 +93,8 @@ def step(m: Model, state: State, d: Modal, control: Array, next_: int, now: int,
         p, travel = d.slot[row], d.b[row]
         for e in range(t.points if bowed else 0):
             travel -= d.G[row, points + e] * t.share * t.f_b[e]
-        w.g[p] = limited_gradient(w.ghat[p], s.Psi[p], travel)
-        A_f = contact_stiffness(m, s, w, p)
+        w.g[p] = finger.limited_gradient(w.ghat[p], s.Psi[p], travel)
+        A_f = finger.contact_stiffness(m, s, w, p)
         d.D[row] = NO_FORCE
         if A_f > 0.0:
             d.D[row] = 1.0 / A_f
@@ -254,13 +239,13 @@ def add_points(m: Model, state: State, d: Modal, i: int, next_: int, now: int, p
     points = d.rows
     for e in range(t.points):
         advance_hair(m, t.zeta[next_, e], t.zeta[now, e], t.zeta[prev, e])
-        yield_to_point(m, t, i, e, c.x[POINT + e])
+        torsion.yield_to_point(m, t, i, e, c.x[POINT + e])
         travel = travel_of(d, s, POINT + e, next_, prev)
         travel += t.zeta[next_, e, i] - t.zeta[prev, e, i]
-        add_row(d, POINT + e, travel + twist_travel(t, i, STRINGS + e, next_), NO_FORCE)
+        add_row(d, POINT + e, travel + torsion.twist_travel(t, i, STRINGS + e, next_), NO_FORCE)
     for e in range(t.points):
         for q in range(t.points):
-            turned = read_twist(t, t.twist_shapes[STRINGS + e], t.twist_per_newton[q])
+            turned = torsion.read_twist(t, t.twist_shapes[STRINGS + e], t.twist_per_newton[q])
             d.G[points + e, points + q] += turned
 
 
@@ -279,8 +264,8 @@ def move_all(
         push(d, d.slot[row], next_, -d.x[row])
     w.bridge_travel = move_modes(m, s.q[next_], s.q[prev], w.f_c)
     for row in range(contacts, points):
-        advance_contact(m, s, w, next_, d.slot[row], d.x[row])
+        finger.advance_contact(m, s, w, next_, d.slot[row], d.x[row])
     for e in range(t.points):
         t.zeta[next_, e, string] -= m.C_h * t.f_b[e]
-        move_twist(t, string, e, next_, t.share * t.f_b[e])
+        torsion.move_twist(t, string, e, next_, t.share * t.f_b[e])
     read_all(d, s, next_)

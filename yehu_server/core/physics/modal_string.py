@@ -21,8 +21,6 @@ Source: [Bilbao] sections 3.2.4 and 6.1; [Yehu] eqs. (2), (3). Derivation: docs/
 section 12.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -104,10 +102,7 @@ MODAL = lined_up(
 def prepare_modal(modal: Any, quantities: Quantities, k: float) -> None:
     """Write the partials of both strings into `modal`, at rest, for a time step (s).
 
-    Raises
-    ------
-    ParameterError
-        Where losses leave a partial no frequency.
+    Raises ParameterError where losses leave a partial no frequency.
     """
     most, x_c = 0, quantities.bridge_x
     modal["x_slot"] = NOWHERE

@@ -13,8 +13,6 @@ Differs: [Yehu] has one direction, in which the finger presses, too.
 Source: [Desvages]; [Mansour]. Derivation: docs/derivation.md, section 11.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -97,15 +95,10 @@ PLANES = lined_up(
 
 
 def prepare(quantities: Quantities, rate: float) -> Any:
-    """What an instrument has besides ``kernel.prepare``: of ``refined.prepare``, PLANES or MODAL.
+    """What an instrument has besides ``kernel.prepare``, at rest: REFINED, PLANES, MODAL, None.
 
-    Returns: ndarray [shape=(1,)], at rest; None where it has nothing.
-
-    Raises
-    ------
-    ParameterError
-        As ``refined.prepare``; where modal strings shall move in two directions, or have losses
-        that leave them no frequency.
+    Raises ParameterError as ``refined.prepare``; where modal strings shall move in two directions,
+    or have losses that leave them no frequency.
     """
     if quantities.scheme == "modal":
         if quantities.directions == "two":

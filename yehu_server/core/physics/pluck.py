@@ -1,7 +1,5 @@
 """Plucking: a string pulled aside by a force and let go, or let go from a triangle."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -42,15 +40,10 @@ def pluck_power(model: Model, c: Contacts, control: Array, u_next: Array, u_prev
 
 
 def pluck_string(model: Any, state: Any, i: int, position: float, amplitude: float) -> None:
-    """Pull string `i` into a triangle, at rest, between the loop or stub and the bridge.
+    """Pull string `i` into a triangle with a corner (m), at rest, up to the bridge.
 
-    Parameters
-    ----------
-    position, amplitude : float, m
-        Of the triangle's corner.
-
-    The nodes at the bridge are moved by what it takes to leave the bridge at rest, so
-    that the constraint of [Yehu] eq. (12) holds from the first sample.
+    The nodes at the bridge are moved by what it takes to leave the bridge at rest, so that the
+    constraint of [Yehu] eq. (12) holds from the first sample.
     """
     pull_string(model[0], state[0]["motion"], i, position, amplitude)
 

@@ -9,8 +9,6 @@ Differs: [Yehu] has no second direction; there friction sees the bow force itsel
 Source: [Desvages]; docs/derivation.md, section 11.
 """
 
-from __future__ import annotations
-
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.finger import limited_gradient
 from yehu_server.core.physics.fixed_power import power

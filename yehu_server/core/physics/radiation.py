@@ -4,8 +4,6 @@
 moved to the same frequencies and its numerators fitted to the same response.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import Any
@@ -13,17 +11,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled
+from yehu_server.core.physics import elementary
 from yehu_server.core.physics.default_quantities import Body
-from yehu_server.core.physics.elementary import (
-    asin,
-    cos,
-    decibels,
-    elementwise,
-    exp,
-    log,
-    power,
-    sincospi,
-)
 from yehu_server.core.physics.layout import MAX_SECTIONS, MAX_TAPS, USUAL_SECTIONS
 from yehu_server.core.physics.records import Model, Motion
 from yehu_server.errors import ParameterError
@@ -33,13 +22,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 
 def prepare_radiation(model: np.void, body: Body) -> None:
-    """Write the filter into `model`, as measured or re-fitted for its sample rate.
-
-    Raises
-    ------
-    ParameterError
-        Where the body has too many sections.
-    """
+    """Write the filter, re-fitted for its rate; raises ParameterError for too many sections."""
     if len(body.sections) > MAX_SECTIONS:
         raise ParameterError(
             f"a body has at most {MAX_SECTIONS} radiation sections, not {len(body.sections)}"
@@ -59,7 +42,7 @@ def prepare_radiation(model: np.void, body: Body) -> None:
 
 def unit_delay(frequency_hz: Floats, rate: float) -> tuple[Floats, Floats]:
     """Real and imaginary part of z^-1 at some frequencies (Hz), up to half the rate (Hz)."""
-    minus_cosine, sine = sincospi(2.0 * frequency_hz / rate - 0.5)
+    minus_cosine, sine = elementary.sincospi(2.0 * frequency_hz / rate - 0.5)
     return -minus_cosine, -sine
 
 
@@ -70,10 +53,7 @@ def over_poles(b_0: Any, b_1: Any, a_1: Any, a_2: Any, z_1: tuple[Floats, Floats
     down_im = im * (a_1 + 2.0 * a_2 * re)
     up_re, up_im = b_0 + b_1 * re, b_1 * im
     size = down_re * down_re + down_im * down_im
-    return (
-        (up_re * down_re + up_im * down_im) / size,
-        (up_im * down_re - up_re * down_im) / size,
-    )
+    return ((up_re * down_re + up_im * down_im) / size, (up_im * down_re - up_re * down_im) / size)
 
 
 def response(sections: Floats, taps: Floats, rate: float, frequency_hz: Floats) -> Any:
@@ -85,10 +65,7 @@ def response(sections: Floats, taps: Floats, rate: float, frequency_hz: Floats) 
 def response_parts(
     sections: Floats, taps: Floats, rate: float, frequency_hz: Floats
 ) -> tuple[Floats, Floats]:
-    """Real and imaginary part of `response`.
-
-    NumPy multiplies and divides complex numbers otherwise on other processors.
-    """
+    """Real and imaginary part of `response`; NumPy's complex products vary by processor."""
     z_1 = unit_delay(frequency_hz, rate)
     re, im = np.zeros_like(frequency_hz), np.zeros_like(frequency_hz)
     for b_0, b_1, a_1, a_2 in sections.tolist():
@@ -122,23 +99,13 @@ def pole_of(a_1: float, a_2: float) -> tuple[float, float]:
         radius = abs(middle) + math.sqrt(-under)
         return radius, 0.0 if middle >= 0.0 else math.pi
     radius = math.sqrt(a_2)
-    return radius, 0.5 * math.pi - asin(middle / radius)
+    return radius, 0.5 * math.pi - elementary.asin(middle / radius)
 
 
 def least_squares(columns: Floats, wanted: Floats) -> Floats:
-    """Find the sum of columns that is nearest to the wanted one, by Householder's reflections.
+    """Factors of the columns whose sum is nearest to the wanted one, by Householder's reflections.
 
-    NumPy's own takes other sums on other processors.
-
-    Parameters
-    ----------
-    columns : ndarray [shape=(columns, rows)]
-    wanted : ndarray [shape=(rows,)]
-
-    Returns
-    -------
-    ndarray [shape=(columns,)]
-        The factors of the columns.
+    NumPy's own takes other sums on other processors. `columns` has the shape (columns, rows).
     """
     left, rest = columns.copy(), wanted.copy()
     for j in range(len(left)):
@@ -178,14 +145,16 @@ def refit(body: Body, rate: float) -> tuple[Floats, Floats]:
 
     poles = [pole_of(a_1, a_2) for a_1, a_2 in measured[:, 2:].tolist()]
     angle = np.array([angle for _, angle in poles]) * body.radiation_rate / rate
-    radius = np.array([power(radius, body.radiation_rate / rate) for radius, _ in poles])
+    radius = np.array([elementary.power(radius, body.radiation_rate / rate) for radius, _ in poles])
     below_nyquist = angle < 0.98 * math.pi
     angle, radius = angle[below_nyquist], radius[below_nyquist]
-    a_1, a_2 = -2.0 * radius * elementwise(cos, angle), radius * radius
+    a_1, a_2 = -2.0 * radius * elementary.elementwise(elementary.cos, angle), radius * radius
 
     band_edge = min(16e3, 0.45 * rate)
     measured_edge = body.radiation_rate / 2.0
-    low = 30.0 * elementwise(exp, np.arange(500) / 499.0 * log(2e3 / 30.0))
+    low = 30.0 * elementary.elementwise(
+        elementary.exp, np.arange(500) / 499.0 * elementary.log(2e3 / 30.0)
+    )
     audible = np.concatenate([low, np.linspace(2e3, band_edge, 900)[1:]])
     above = np.linspace(band_edge, rate / 2.0, 600)[1:]
     wanted_audible, wanted_above = target(audible), target(np.minimum(above, measured_edge))
@@ -209,7 +178,7 @@ def refit(body: Body, rate: float) -> tuple[Floats, Floats]:
         rows = 2 * len(frequency_hz)
         solution = least_squares(weighted.reshape(-1, rows), (wanted * weight).reshape(rows)) / size
         fitted = (columns * solution[:, np.newaxis, np.newaxis]).sum(axis=0)
-        error_db = 2.0 * decibels(magnitude(fitted) / reference)
+        error_db = 2.0 * elementary.decibels(magnitude(fitted) / reference)
         # Below the band's edge every tenth of a dB counts; above, only what exceeds it.
         excess = np.where(is_above, np.maximum(error_db, 0.0) / 2.0, np.abs(error_db) / 0.1)
         weight = weight * np.sqrt(1.0 + excess)

@@ -5,8 +5,6 @@ planes.PLANES or modal_string.MODAL has these attributes.
 docs/notation.md has their symbols and units.
 """
 
-from __future__ import annotations
-
 from typing import Protocol
 
 import numpy as np

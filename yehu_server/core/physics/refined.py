@@ -6,25 +6,19 @@ are solved jointly; the fingers are eliminated with a column for each point.
 docs/derivation.md, sections 8 to 10.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics import kernel
+from yehu_server.core.physics import hair_width, kernel, torsion
 from yehu_server.core.physics.bow import (
     FRICTION_MARGIN,
     advance_hair,
     choose_string,
     friction_limit,
 )
-from yehu_server.core.physics.bridge import (
-    advance_bridge,
-    eliminate_tension_and_bridge,
-    move_modes,
-)
+from yehu_server.core.physics.bridge import advance_bridge, eliminate_tension_and_bridge, move_modes
 from yehu_server.core.physics.contacts import (
     compliance,
     free_displacement,
@@ -41,17 +35,6 @@ from yehu_server.core.physics.elimination import (
 from yehu_server.core.physics.finger import advance_fingers, limit_gradients
 from yehu_server.core.physics.friction_curve import prepare_friction
 from yehu_server.core.physics.grid import interpolate, spread
-from yehu_server.core.physics.hair_width import (
-    hair_energy,
-    hair_loss,
-    lift_points,
-    place_points,
-    point_power_off_law,
-    point_velocity,
-    prepare_width,
-    solve_points,
-    warm_points,
-)
 from yehu_server.core.physics.layout import (
     BOW,
     ENERGY,
@@ -77,31 +60,15 @@ from yehu_server.core.physics.pluck import pluck
 from yehu_server.core.physics.records import Array, Model, Records, Refined, State
 from yehu_server.core.physics.rosin_texture import grip
 from yehu_server.core.physics.string import advance_strings, support
-from yehu_server.core.physics.torsion import (
-    advance_torsion,
-    move_twist,
-    prepare_torsion,
-    read_twist,
-    skin_loss,
-    torsion_energy,
-    torsion_loss,
-    twist_travel,
-    yield_to_point,
-)
 from yehu_server.errors import ParameterError
 
 
 def prepare(quantities: Quantities, rate: float) -> Any:
-    """What an instrument has besides ``kernel.prepare``, at rest; None where it has nothing.
+    """What an instrument has besides ``kernel.prepare``, of dtype layout.REFINED, at rest, or None.
 
-    Returns: ndarray [shape=(1,), dtype=layout.REFINED].
-
-    Raises
-    ------
-    ParameterError
-        Where no torsional mode is low enough for the sample rate, hair with a friction that is
-        hyperbolic has some width; where strings are modal or move in two directions, which is
-        ``planes.prepare``'s.
+    Raises ParameterError where no torsional mode is low enough for the sample rate, hair with a
+    hyperbolic friction has some width; where strings are ``planes.prepare``'s: modal, or in two
+    directions.
     """
     if quantities.directions == "two":
         raise ParameterError("directions: strings move in two only for simulate and sweeps")
@@ -119,9 +86,9 @@ def prepare(quantities: Quantities, rate: float) -> Any:
 def prepare_into(refined: Any, quantities: Quantities, rate: float) -> None:
     """As `prepare`, into a record at rest, of any instrument."""
     prepare_friction(refined, quantities)
-    prepare_width(refined, quantities)
+    hair_width.prepare_width(refined, quantities)
     if quantities.torsion == "on":
-        prepare_torsion(refined, quantities, 1.0 / rate)
+        torsion.prepare_torsion(refined, quantities, 1.0 / rate)
 
 
 @compiled
@@ -165,11 +132,11 @@ def step(
     eliminate_tension_and_bridge(m, s, w, u_next, q_sum)
 
     string, bowed = choose_string(m, s, c, w, control[F_N])
-    lift_points(m, t, w, string, bowed)
-    place_points(m, c, t, string, control[X_B])
+    hair_width.lift_points(m, t, w, string, bowed)
+    hair_width.place_points(m, c, t, string, control[X_B])
     place_contacts(m, c, control, string)
     near = advance_fingers(m, s, c, w, control, next_, now, prev)
-    advance_torsion(m, t, c, w, near, next_, now, prev)
+    torsion.advance_torsion(m, t, c, w, near, next_, now, prev)
 
     # What each point would see without friction, and how friction moves it and the others.
     for e in range(t.points):
@@ -178,17 +145,17 @@ def step(
         for column, each in enumerate(response(c, w, p)):
             t.responses[e, column] = each
         advance_hair(m, t.zeta[next_, e], t.zeta[now, e], t.zeta[prev, e])
-        yield_to_point(m, t, string, e, c.x[p])
+        torsion.yield_to_point(m, t, string, e, c.x[p])
         travel = free_displacement(c, w, u_next, p) - interpolate(
             u_prev[string], c.first[p], c.weights[p]
         )
         travel += t.zeta[next_, e, string] - t.zeta[prev, e, string]
-        travel += twist_travel(t, string, STRINGS + e, next_)
+        travel += torsion.twist_travel(t, string, STRINGS + e, next_)
         t.free[e] = 0.5 * m.rate * travel - control[V_B]
     for e in range(t.points):
         for q in range(t.points):
             G = compliance(m, c, w, POINT + e, POINT + q, response(c, w, POINT + q))
-            G += read_twist(t, t.twist_shapes[STRINGS + e], t.twist_per_newton[q])
+            G += torsion.read_twist(t, t.twist_shapes[STRINGS + e], t.twist_per_newton[q])
             G = t.share * G + (m.C_h if e == q else 0.0)
             t.mobility[e, q] = 0.5 * m.rate * G
 
@@ -200,11 +167,11 @@ def step(
     for e in range(t.points if not bowed else 0):
         t.f_b[e], t.v_r[e] = 0.0, t.free[e]
     if bowed:
-        w.iterations = solve_points(m, state, t, string, F_N_now)
+        w.iterations = hair_width.solve_points(m, state, t, string, F_N_now)
     for e in range(t.points):
         s.f_b += t.share * t.f_b[e]
         s.v_r += t.share * t.v_r[e]
-    warm_points(m, t, string, bowed, F_N_now)
+    hair_width.warm_points(m, t, string, bowed, F_N_now)
 
     # All that the forces move.
     for i in range(STRINGS):
@@ -217,7 +184,7 @@ def step(
         p, f = POINT + e, t.share * t.f_b[e]
         spread(u_next[string], c.first[p], c.weights[p], -m.spread[string] * f)
         t.zeta[next_, e, string] -= m.C_h * t.f_b[e]
-        move_twist(t, string, e, next_, f)
+        torsion.move_twist(t, string, e, next_, f)
     w.bridge_travel = move_modes(m, s.q[next_], s.q[prev], w.f_c)
     for i in range(STRINGS):
         support(u_next[i], m.N[i])
@@ -290,9 +257,9 @@ def back_substitute_fingers(m: Model, state: State, t: Refined, next_: int) -> N
 @compiled
 def stored_energy(m: Model, t: Refined, next_: int, now: int) -> float:
     """The energy of torsion, hair and bristles at n + 1/2 (J)."""
-    stored = hair_energy(m, t, next_, now)
+    stored = hair_width.hair_energy(m, t, next_, now)
     for i in range(STRINGS):
-        stored += torsion_energy(m, t, i, next_, now)
+        stored += torsion.torsion_energy(m, t, i, next_, now)
     return stored
 
 
@@ -300,24 +267,21 @@ def stored_energy(m: Model, t: Refined, next_: int, now: int) -> float:
 def record_points(
     m: Model, state: State, t: Refined, control: Array, before: float, row: Array
 ) -> float:
-    """Write torsion, hair and friction of all points to a row of the ledger.
-
-    As ``energy.record_energy`` does.
-    """
+    """Write torsion, hair and friction of all points to the ledger, as ``energy.record_energy``."""
     s, c = state.motion, state.contacts
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     stored = stored_energy(m, t, next_, now)
     strings, finger, friction, residual, off_law = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(STRINGS):
-        strings += torsion_loss(m, t, i, next_, prev)
-        finger += skin_loss(m, t, i, next_)
+        strings += torsion.torsion_loss(m, t, i, next_, prev)
+        finger += torsion.skin_loss(m, t, i, next_)
     for e in range(t.points):
-        v_r = point_velocity(m, s, c, t, e, next_) - control[V_B]
+        v_r = hair_width.point_velocity(m, s, c, t, e, next_) - control[V_B]
         if abs(control[F_N]) >= m.lift_force and state.work.F_N > 0.0:
             friction += t.share * (t.f_b[e] * v_r - m.epsilon_0 * t.z_bar[e] * t.r[e])
             residual = max(residual, abs(v_r - t.v_r[e]))
-            off_law += t.share * point_power_off_law(m, c, t, e, state.work.F_N, v_r)
-    hair = hair_loss(m, t, next_, prev)
+            off_law += t.share * hair_width.point_power_off_law(m, c, t, e, state.work.F_N, v_r)
+    hair = hair_width.hair_loss(m, t, next_, prev)
     losses = strings + finger + hair + friction - row[LOSS_FRICTION]
     row[ENERGY_ERROR] += (stored - before) * m.rate + losses
     row[ENERGY] += stored

@@ -11,8 +11,6 @@ sustains w = mu v_r, with mu of the Stribeck curve; so the static coefficient at
 that steady slipping has the friction of eq. (17), and only what changes differs.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from yehu_server.compile.jit import compiled

@@ -8,8 +8,6 @@ keep their stiffness, so friction loses energy as before, whatever the texture.
 Differs: [Yehu] has an even hair.
 """
 
-from __future__ import annotations
-
 import math
 
 from yehu_server.compile.jit import compiled
@@ -23,14 +21,9 @@ MIN_FRICTION_FACTOR = 0.05  # of the friction coefficients; without friction the
 
 @compiled
 def texture(s: Motion, place: float, hair: int) -> float:
-    """The texture, -1 to 1, at a place counted in grains; smooth between random numbers.
+    """The texture, -1 to 1, at a place counted in grains; smooth between a hair's random numbers.
 
     Those of the grain under the string are kept: it sticks to the same one most of the time.
-
-    Parameters
-    ----------
-    hair : int
-        Number of the random sequence.
     """
     cell = math.floor(place)
     part = place - cell

@@ -12,8 +12,6 @@ The limit is of a motion that is there. To begin one from rest takes more (docs/
 Source: [Schelleng]; [Woodhouse].
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -29,12 +27,8 @@ MAX_OF_RATE = 0.4  # of the sample rate: partials above are left out
 def bridge_conductance(m: Any, f: float) -> float:
     """Return Re(Y) of the bridge (s/kg) at a frequency (Hz).
 
-    Y is the sum over the body's modes of j w/(K_m - M_m w^2 + j w R_m). In the scheme w is
-    (2/k) tan(pi f k), as the modes are pre-warped.
-
-    Parameters
-    ----------
-    m : record of layout.MODEL
+    Y is the sum over the body's modes of j w/(K_m - M_m w^2 + j w R_m). In the scheme w is (2/k)
+    tan(pi f k), as the modes are pre-warped.
     """
     w, total = 2.0 / m.k * tan(math.pi * f * m.k), 0.0
     for i in range(m.modes):
@@ -65,15 +59,9 @@ def finger_conductance(m: Any, i: int, f: float, x_f: float, press: float) -> fl
 
 @compiled
 def resistance(m: Any, i: int, f: float, x_f: float, press: float) -> float:
-    """Return the resistance R (kg/s) of Schelleng's lower limit, for a note of string `i`.
+    """The resistance R (kg/s) of Schelleng's lower limit, for a note (Hz) of string `i`.
 
-    Parameters
-    ----------
-    m : record of layout.MODEL
-    f : float, Hz
-        Of the note.
-    x_f, press : float, m, N
-        The finger nearest to the bridge; no press on an open string.
+    `x_f` (m) and `press` (N) are the nearest finger's; no press on an open string.
     """
     Z = math.sqrt(m.T[i] * m.rho_A[i])
     per_length = math.pi / (m.bridge_x - (x_f if press > 0.0 else 0.0))
@@ -96,19 +84,7 @@ def resistance(m: Any, i: int, f: float, x_f: float, press: float) -> float:
 
 @compiled
 def upper_limit(Z: float, grip: float, v_b: float, beta: float) -> float:
-    """Return the largest bow force (N).
-
-    Parameters
-    ----------
-    Z : float
-        Wave impedance of the string (kg/s).
-    grip : float
-        mu_S - mu_C.
-    v_b : float
-        Bow speed (m/s).
-    beta : float
-        Bow position.
-    """
+    """The largest bow force (N), for Z (kg/s), mu_S - mu_C, bow speed (m/s) and position."""
     return 2.0 * Z * v_b / (beta * grip)
 
 

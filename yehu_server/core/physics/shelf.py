@@ -4,8 +4,6 @@ Of second order, with trapezoidal integrators, so that gain and frequency may mo
 Source: [Simper].
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -39,18 +37,7 @@ def prepare_shelf(shelf: Any, rate: float) -> None:
 
 @compiled
 def shelved(s: Any, x: float, gain_db: float, frequency: float) -> float:
-    """Compute the next output; the input itself at a gain of 0. Real time: safe.
-
-    Parameters
-    ----------
-    s : record of dtype SHELF
-    x : float
-        The input.
-    gain_db : float, dB
-        Of high frequencies.
-    frequency : float, Hz
-        Where it has half of these decibels.
-    """
+    """The next output, with a gain (dB) of what is above a frequency (Hz). Real time: safe."""
     if gain_db != s.gain_db or frequency != s.frequency:
         s.gain_db, s.frequency = gain_db, frequency
         root = exp10(gain_db / 80.0)

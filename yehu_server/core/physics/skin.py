@@ -16,8 +16,6 @@ Differs: [Yehu] has no second direction.
 Source: [Dahl]; docs/derivation.md, section 11.
 """
 
-from __future__ import annotations
-
 from yehu_server.compile.jit import compiled
 from yehu_server.core.physics.grid import interpolate
 from yehu_server.core.physics.layout import LEVELS, STRINGS

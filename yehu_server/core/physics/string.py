@@ -1,7 +1,5 @@
 """A stiff string with two losses: [Yehu] eqs. (30)-(32), boundaries eq. (3)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

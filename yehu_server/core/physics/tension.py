@@ -15,8 +15,6 @@ the step's end (contacts.py).
 Source: [Bilbao] section 8.1; docs/physics.md. Derivation: docs/derivation.md, section 2.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled
@@ -42,14 +40,8 @@ def set_tension_gain(model: Model, i: int) -> None:
 def eliminate_tension(model: Model, w: Work, i: int) -> tuple[float, float, float]:
     """Eliminate a string's tau.
 
-    Returns
-    -------
-    tau : float
-        Without other forces.
-    tau_per_sum : float, 1/(N m)
-        How it responds to the sum of the forces on the string times Delta u^n under them.
-    pivot : float
-        1 + gain Delta u^n . Delta u^n, by which both have been divided.
+    Returns it without other forces, how it responds to the sum of the forces times Delta u^n under
+    them (1/(N m)), and 1 + gain Delta u^n . Delta u^n, by which both have been divided.
     """
     pivot = 1.0 + model.tension_gain[i] * w.Delta_u_squared[i]
     weight = model.tension_gain[i] / pivot

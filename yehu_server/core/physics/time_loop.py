@@ -4,8 +4,6 @@ Playing, simulations, sweeps and tests call these, so that each is compiled once
 them compute the very same samples.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -215,12 +213,7 @@ def advance_with_ledger(
 
 
 def run(
-    model: Any,
-    state: Any,
-    more: Any,
-    controls: Array,
-    probes: Array,
-    ledger: Array | None = None,
+    model: Any, state: Any, more: Any, controls: Array, probes: Array, ledger: Array | None = None
 ) -> None:
     """Run the model of an instrument over all rows of some controls.
 

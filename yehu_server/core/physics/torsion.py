@@ -15,8 +15,6 @@ Differs: [Yehu] has no torsion.
 Source: [Mansour]; [Euphonics] 9.5.3. Derivation: docs/derivation.md, section 8.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -37,10 +35,7 @@ NEGLIGIBLE_M = 1e-30
 def prepare_torsion(refined: Any, quantities: Quantities, k: float) -> None:
     """Write the torsional modes of both strings into `refined`, for a time step (s).
 
-    Raises
-    ------
-    ParameterError
-        Where no mode is low enough for the sample rate.
+    Raises ParameterError where no mode is low enough for the sample rate.
     """
     refined["R_skin"] = quantities.finger.R_t
     x_c, most = quantities.bridge_x, 0

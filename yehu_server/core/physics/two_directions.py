@@ -7,10 +7,8 @@ normal force of the step before.
 docs/derivation.md, section 11.
 """
 
-from __future__ import annotations
-
 from yehu_server.compile.jit import compiled
-from yehu_server.core.physics import kernel, refined
+from yehu_server.core.physics import kernel, press, refined, torsion
 from yehu_server.core.physics.bow import advance_hair, choose_string
 from yehu_server.core.physics.bridge import advance_bridge, move_modes
 from yehu_server.core.physics.contacts import place_contacts
@@ -56,26 +54,11 @@ from yehu_server.core.physics.layout import (
 )
 from yehu_server.core.physics.planes import BOWING, BRIDGE_ROW, CONTACT_ROW, NORMAL
 from yehu_server.core.physics.pluck import pluck
-from yehu_server.core.physics.press import (
-    hair_position,
-    hair_stiffness,
-    move_hair,
-    press_energy,
-    press_hair,
-    press_loss,
-)
 from yehu_server.core.physics.records import Array, Model, Planes, Records, State
 from yehu_server.core.physics.rosin_texture import grip
 from yehu_server.core.physics.skin import advance_skin, let_go, prepare_skin, skin_power
 from yehu_server.core.physics.string import advance_strings, support
 from yehu_server.core.physics.tension import move_by_tension
-from yehu_server.core.physics.torsion import (
-    advance_torsion,
-    move_twist,
-    read_twist,
-    twist_travel,
-    yield_to_point,
-)
 
 
 @compiled
@@ -128,12 +111,12 @@ def step(
     string, is_pressed = choose_string(m, s, c, w, control[F_N])
     place_points(m, c, t, string, control[X_B])
     place_contacts(m, c, control, string)
-    press_hair(m, d, c, n, w, control[F_N], is_pressed, next_, now, prev)
+    press.press_hair(m, d, c, n, w, control[F_N], is_pressed, next_, now, prev)
     d.F_N = max(0.0, d.f_n[BOW]) * grip(m, s, c, control, now)
     bowed = is_pressed and m.lift_force <= d.F_N
     lift_points(m, t, w, string, bowed)
     near = advance_fingers(m, n, c, wn, control, next_, now, prev)
-    advance_torsion(m, t, c, wn, near, next_, now, prev)
+    torsion.advance_torsion(m, t, c, wn, near, next_, now, prev)
 
     add_contacts(m, state, d, near, next_, prev)
     points = d.rows
@@ -198,7 +181,7 @@ def add_contacts(m: Model, state: State, d: Planes, near: int, next_: int, prev:
         row, i = d.rows, c.string[BOW]
         add_row(m, d, s, n, NORMAL, i, BOW, c.first[BOW], c.weights[BOW], d.side)
         d.G[row, row] += d.C_n
-        d.b[row] = hair_position(d, c, n, next_) - d.Y[next_] - d.eta_prev
+        d.b[row] = press.hair_position(d, c, n, next_) - d.Y[next_] - d.eta_prev
 
 
 @compiled
@@ -209,15 +192,15 @@ def add_points(m: Model, state: State, d: Planes, i: int, next_: int, now: int, 
     for e in range(t.points):
         p, row = POINT + e, points + e
         advance_hair(m, t.zeta[next_, e], t.zeta[now, e], t.zeta[prev, e])
-        yield_to_point(m, t, i, e, c.x[p])
+        torsion.yield_to_point(m, t, i, e, c.x[p])
         add_row(m, d, s, n, BOWING, i, BOW, c.first[p], c.weights[p], 1.0)
         d.b[row] = interpolate(s.u[next_, i], c.first[p], c.weights[p])
         d.b[row] -= interpolate(s.u[prev, i], c.first[p], c.weights[p])
         d.b[row] += t.zeta[next_, e, i] - t.zeta[prev, e, i]
-        d.b[row] += twist_travel(t, i, STRINGS + e, next_)
+        d.b[row] += torsion.twist_travel(t, i, STRINGS + e, next_)
     for e in range(t.points):
         for q in range(t.points):
-            turned = read_twist(t, t.twist_shapes[STRINGS + e], t.twist_per_newton[q])
+            turned = torsion.read_twist(t, t.twist_shapes[STRINGS + e], t.twist_per_newton[q])
             d.G[points + e, points + q] += turned
 
 
@@ -239,7 +222,7 @@ def write_laws(m: Model, d: Planes, bowed: bool, points: int) -> None:
         for e in range(t.points if bowed else 0):
             travel -= d.G[row, points + e] * t.share * t.f_b[e]
         if p == BOW:
-            A_f = hair_stiffness(m, d, travel)
+            A_f = press.hair_stiffness(m, d, travel)
             held = d.g * d.Psi
         else:
             wn.g[p] = limited_gradient(wn.ghat[p], n.Psi[p], travel)
@@ -276,13 +259,13 @@ def move_all(
             travel -= interpolate(s.u[prev, i], first, weights)
             advance_skin(m, d, p, 0.5 * m.rate * travel, f)
         elif p == BOW:
-            move_hair(m, d, next_, f)
+            press.move_hair(m, d, next_, f)
         else:
             advance_contact(m, n, wn, next_, p, f)
             d.f_n[p] = f
     for e in range(t.points):
         t.zeta[next_, e, string] -= m.C_h * t.f_b[e]
-        move_twist(t, string, e, next_, t.share * t.f_b[e])
+        torsion.move_twist(t, string, e, next_, t.share * t.f_b[e])
     size = 0.0
     for i in range(STRINGS):
         support(s.u[next_, i], m.N[i])
@@ -314,7 +297,7 @@ def slope_product(m: Model, i: int, u_next: Array, u: Array) -> float:
 def stored_energy(m: Model, state: State, d: Planes, next_: int, now: int) -> float:
     """The energy that ``energy.stored_energy`` does not count, at n + 1/2 (J)."""
     s, n = state.motion, d.normal
-    stored = refined.stored_energy(m, d.refined, next_, now) + press_energy(m, d, next_, now)
+    stored = refined.stored_energy(m, d.refined, next_, now) + press.press_energy(m, d, next_, now)
     for i in range(STRINGS):
         stored += string_energy(m, i, n.u[next_, i], n.u[now, i])
         along = slope_product(m, i, s.u[next_, i], s.u[now, i])
@@ -333,10 +316,7 @@ def stored_energy(m: Model, state: State, d: Planes, next_: int, now: int) -> fl
 def record_planes(
     m: Model, state: State, d: Planes, control: Array, before: float, row: Array
 ) -> float:
-    """Write what the second direction, and ``refined.record_points``, add to a row of the ledger.
-
-    As ``energy.record_energy`` does.
-    """
+    """Write what the second direction, and ``refined.record_points``, add to the ledger."""
     s, n, c, wn, t = state.motion, d.normal, state.contacts, d.normal_work, d.refined
     next_, now, prev = s.level, (s.level + 2) % LEVELS, (s.level + 1) % LEVELS
     refined_stored = refined.record_points(m, state, t, control, 0.0, row)
@@ -358,7 +338,7 @@ def record_planes(
             Psi = n.Psi[p] - 0.5 * wn.g[p] * travel
             finger += m.beta * wn.g[p] * Psi * (0.5 * m.rate * travel) ** 2
         finger += skin_power(m, s, c, d, p, next_)
-    hair = press_loss(m, d, c, n, next_)
+    hair = press.press_loss(m, d, c, n, next_)
     power = 0.5 * m.rate * d.f_ext * (d.Y[next_] - d.Y[prev])
     for r in range(BRIDGE_ROW, CONTACT_ROW):
         i = d.string[r]

@@ -1,37 +1,10 @@
 """Carries out the steps of a note's gesture as they are due. Compiled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.player import notes, right_hand
+from yehu_server.core.player import gestures, notes, right_hand
 from yehu_server.core.player.ear import HOP_S
-from yehu_server.core.player.gestures import (
-    AT,
-    AT_SHARE,
-    BOW_COUNT,
-    BOW_STEPS,
-    FINGER_COUNT,
-    FINGER_STEPS,
-    GLIDE,
-    IS_ON,
-    MAX_ROUNDS,
-    RAMP,
-    RAMP_SHARE,
-    REPEAT_MS,
-    SEMITONES,
-    SHAPES,
-    SHORTENING,
-    SPEED,
-    TURNS,
-    WEIGHT,
-    begin_slide,
-    gain_of,
-    note_length,
-    slide_position,
-    within_reach,
-)
 from yehu_server.core.player.notes import BEND_RAMP_MS
 from yehu_server.core.player.phrasing import STEP_MS
 from yehu_server.core.player.velocity import has_risen
@@ -47,7 +20,7 @@ def articulate(p: Any, c: Any) -> None:
         return
     g = p.gesture
     now = (c.frame - p.note_began) / p.rate
-    length = note_length(p, g.row)
+    length = gestures.note_length(p, g.row)
     move_bow(p, c, now, length)
     move_level(p, c)
     move_finger(p, c, now, length)
@@ -56,18 +29,18 @@ def articulate(p: Any, c: Any) -> None:
 @compiled_exactly
 def time_of(step: Any, time_factor: float, length: float) -> float:
     """When a step is due (s after its round began)."""
-    return float(1e-3 * time_factor * step[AT] + step[AT_SHARE] * length)
+    return float(1e-3 * time_factor * step[gestures.AT] + step[gestures.AT_SHARE] * length)
 
 
 @compiled_exactly
 def begin_again(track: Any, row: int, count: int, now: float) -> None:
     """Begin a hand's steps once more, where all are done and they are to come again by now."""
-    if SHAPES[row, REPEAT_MS] == 0.0 or not track.step >= count > 0:
+    if gestures.SHAPES[row, gestures.REPEAT_MS] == 0.0 or not track.step >= count > 0:
         return
-    if track.times + 1 >= SHAPES[row, MAX_ROUNDS]:
+    if track.times + 1 >= gestures.SHAPES[row, gestures.MAX_ROUNDS]:
         return
-    sooner = max(1.0 - SHAPES[row, SHORTENING] * track.times, MIN_ROUND_FRACTION)
-    again = 1e-3 * SHAPES[row, REPEAT_MS] * sooner
+    sooner = max(1.0 - gestures.SHAPES[row, gestures.SHORTENING] * track.times, MIN_ROUND_FRACTION)
+    again = 1e-3 * gestures.SHAPES[row, gestures.REPEAT_MS] * sooner
     if now >= track.begins + again:
         track.step, track.begins = 0, track.begins + again
         track.times += 1
@@ -77,26 +50,26 @@ def begin_again(track: Any, row: int, count: int, now: float) -> None:
 def move_bow(p: Any, c: Any, now: float, length: float) -> None:
     """Carry out the bow's steps that are due."""
     g = p.gesture
-    count = BOW_COUNT[g.row]
-    if FINGER_COUNT[g.row] == 0:
+    count = gestures.BOW_COUNT[g.row]
+    if gestures.FINGER_COUNT[g.row] == 0:
         begin_again(g.bow, g.row, count, now)
     while g.bow.step < count:
-        step = BOW_STEPS[g.row, g.bow.step]
+        step = gestures.BOW_STEPS[g.row, g.bow.step]
         if now < g.bow.begins + time_of(step, g.time_factor, length):
             return
         g.bow.step += 1
-        ramp_ms = g.time_factor * step[RAMP] + 1e3 * step[RAMP_SHARE] * length
+        ramp_ms = g.time_factor * step[gestures.RAMP] + 1e3 * step[gestures.RAMP_SHARE] * length
         g.move_ends = now + 1e-3 * ramp_ms
-        g.speed, g.weight = step[SPEED], step[WEIGHT]
-        g.is_off = 0 if step[IS_ON] != 0.0 else 1
-        if step[TURNS] != 0.0:
+        g.speed, g.weight = step[gestures.SPEED], step[gestures.WEIGHT]
+        g.is_off = 0 if step[gestures.IS_ON] != 0.0 else 1
+        if step[gestures.TURNS] != 0.0:
             p.direction = -p.direction
         if g.is_off != 0:
             right_hand.lift(p, c, ramp_ms)
         else:
             notes.set_bow_pressure(p, c)
             notes.draw(p, c, ramp_ms)
-            g.gain_to = gain_of(g)
+            g.gain_to = gestures.gain_of(g)
             g.gain_step = (g.gain_to - g.gain_db) / max(ramp_ms / HOP_MS, 1.0)
 
 
@@ -117,21 +90,23 @@ def move_level(p: Any, c: Any) -> None:
 def move_finger(p: Any, c: Any, now: float, length: float) -> None:
     """Carry out the finger's steps that are due, and go on with its slide."""
     g = p.gesture
-    count = FINGER_COUNT[g.row]
+    count = gestures.FINGER_COUNT[g.row]
     begin_again(g.finger, g.row, count, now)
     while g.finger.step < count:
-        step = FINGER_STEPS[g.row, g.finger.step]
+        step = gestures.FINGER_STEPS[g.row, g.finger.step]
         if now < g.finger.begins + time_of(step, g.time_factor, length):
             break
         g.finger.step += 1
-        semitones = within_reach(p, step[SEMITONES])
-        if step[GLIDE] > 0.0:
-            begin_slide(p, g.bend, semitones, now, 1e-3 * g.time_factor * step[GLIDE])
+        semitones = gestures.within_reach(p, step[gestures.SEMITONES])
+        if step[gestures.GLIDE] > 0.0:
+            gestures.begin_slide(
+                p, g.bend, semitones, now, 1e-3 * g.time_factor * step[gestures.GLIDE]
+            )
         else:
             g.bend, g.slide_s = semitones, 0.0
             notes.follow_pitch(p, c, STEP_MS)
     if g.slide_s > 0.0:
-        g.bend = slide_position(g, now)
+        g.bend = gestures.slide_position(g, now)
         if now >= g.slide_at + g.slide_s:
             g.slide_s = 0.0
         notes.follow_pitch(p, c, BEND_RAMP_MS)

@@ -6,14 +6,12 @@ that still reaches its end changes direction there. The strokes of a tremolo are
 their rate is in ``params.articulations``.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.player.parameter_indices import BOW_LENGTH, BOW_SPEED, DIRECTION, NOTE_LENGTH
+from yehu_server.core.player.parameter_indices import BOW, PLAYING
 
 USUAL_S = 0.4  # a note lasts, where nothing says so
 MIN_SPEED_FACTOR = 0.6  # factor on the speed of a bow that has to last
@@ -25,31 +23,25 @@ CHANGE_MS = 28.0  # time in which a bow changes its direction within a note
 @compiled_exactly
 def hair_left(p: Any, c: Any, direction: float) -> float:
     """Hair (m) that is left for a stroke in a direction."""
-    length = p.value[BOW_LENGTH]
+    length = p.value[PLAYING.bow_length]
     left = length - c.bow_displacement if direction > 0.0 else c.bow_displacement
     return float(left - END_FRACTION * length)
 
 
 @compiled_exactly
 def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
-    """Choose direction of the bow, and factor on its speed, for a note at a speed (m/s).
-
-    Returns
-    -------
-    bool
-        Whether the bow changes its direction.
-    """
+    """Choose a note's direction, and a factor on its speed (m/s); return whether it turns."""
     before = p.direction
-    command = np.rint(p.value[DIRECTION])
+    command = np.rint(p.value[PLAYING.direction])
     if not is_slur:
         p.direction = command if command != 0.0 else -p.direction
-    length = p.value[BOW_LENGTH]
+    length = p.value[PLAYING.bow_length]
     p.stroke_speed_factor = 1.0
     if length == 0.0:
         return bool(p.direction != before)
     c.bow_displacement = min(max(c.bow_displacement, 0.0), length)
-    is_known = p.value[NOTE_LENGTH] > 0.0
-    needed = speed * (p.value[NOTE_LENGTH] if is_known else USUAL_S)
+    is_known = p.value[PLAYING.note_length] > 0.0
+    needed = speed * (p.value[PLAYING.note_length] if is_known else USUAL_S)
     if not is_slur and (p.side == 0.0 or command != 0.0):
         begin = (
             RESTART_FRACTION
@@ -70,8 +62,8 @@ def plan_stroke(p: Any, c: Any, speed: float, is_slur: bool) -> bool:
 @compiled_exactly
 def is_at_its_end(p: Any, c: Any, speed: float) -> bool:
     """Whether the bow has to turn now, at a speed (m/s), to turn before its end."""
-    if p.side == 0.0 or p.value[BOW_LENGTH] == 0.0:
+    if p.side == 0.0 or p.value[PLAYING.bow_length] == 0.0:
         return False
-    if p.taken[BOW_SPEED] != 0 or p.is_held[BOW_SPEED] != 0:
+    if p.taken[BOW.speed] != 0 or p.is_held[BOW.speed] != 0:
         return False
     return hair_left(p, c, p.direction) < 0.5e-3 * CHANGE_MS * speed

@@ -5,8 +5,6 @@ registers under a fast or a heavy bow. The table for each string is found by pla
 (`yehu_lab.practising.bowing_search`); `default_bowing_table` is what that search starts from.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -54,17 +52,10 @@ def default_bowing_table() -> Array:
 
 @compiled_exactly
 def bowing_value(table: Array, string: int, place: float, pitch: float, column: int) -> float:
-    """One value of how a pitch (fractional MIDI note) is bowed on a string; interpolated.
+    """A column of how a pitch (fractional MIDI note) is bowed at a place on a string; interpolated.
 
-    Parameters
-    ----------
-    table : ndarray [shape=(STRINGS, len(BOW_POSITIONS), NOTES, BOWING_SIZE)]
-    string : int
-        0 or 1.
-    place : float
-        The bow position asked for.
-    column : int
-        TOP_SPEED, AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR or MIN_PRESS.
+    `table` has the shape (STRINGS, len(BOW_POSITIONS), NOTES, BOWING_SIZE); columns are TOP_SPEED,
+    AT_FLAUTANDO, AT_LIGHT, AT_FIRM, DISTANCE_FACTOR and MIN_PRESS.
     """
     at = log(place)
     row = 0
@@ -89,13 +80,7 @@ def at_pitch(bowings: Array, pitch: float, column: int) -> float:
 def bow_pressure_for(
     flautando: float, light: float, firm: float, command: float, string: int
 ) -> float:
-    """The value of ``/bow/pressure`` for one of ``/playing/pressure``, on a string.
-
-    Parameters
-    ----------
-    flautando, light, firm : float
-        The values for FLAUTANDO, LIGHT and FIRM.
-    """
+    """``/bow/pressure`` for a ``/playing/pressure``, by those of FLAUTANDO, LIGHT and FIRM."""
     if command <= FLAUTANDO:
         return flautando * command / FLAUTANDO
     if command <= LIGHT:

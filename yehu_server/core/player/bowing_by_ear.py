@@ -6,8 +6,6 @@ scratches or plays tremolo, and only a little where the bow is to be light. From
 slips twice in each period it goes nearer to the bridge for a moment.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -15,7 +13,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.bowing import FIRM, FLAUTANDO, SCRATCHY
 from yehu_server.core.player.ear import PITCH_CERTAINTY, learning_bin
 from yehu_server.core.player.gestures import tremolo_of
-from yehu_server.core.player.parameter_indices import LISTENING, PRESSURE
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.right_hand import set_bow_pressure
 
 FEW_SLIPS, MANY_SLIPS = 0.6, 1.5  # slips in a period: between them the string speaks
@@ -48,14 +46,14 @@ def begin_pressure_correction(p: Any, pitch: float) -> None:
 @compiled_exactly
 def may_correct_pressure(p: Any) -> bool:
     """Whether the hand may help: not where it is to scratch or to tremble."""
-    listens = p.value[LISTENING] > 0.0 and p.corrects_pressure != 0
-    return bool(listens and p.value[PRESSURE] < SCRATCHY and tremolo_of(p) == 0.0)
+    listens = p.value[PLAYING.listening] > 0.0 and p.corrects_pressure != 0
+    return bool(listens and p.value[PLAYING.pressure] < SCRATCHY and tremolo_of(p) == 0.0)
 
 
 @compiled_exactly
 def heaviest(p: Any) -> float:
     """The largest factor on the bow's pressure."""
-    return MAX_FLAUTANDO_FACTOR if p.value[PRESSURE] <= FLAUTANDO else MAX_PRESSURE_FACTOR
+    return MAX_FLAUTANDO_FACTOR if p.value[PLAYING.pressure] <= FLAUTANDO else MAX_PRESSURE_FACTOR
 
 
 @compiled_exactly
@@ -64,7 +62,9 @@ def fault_of(p: Any) -> int:
 
     Without a period and with many slips the bow may be either; then the command decides.
     """
-    if p.ear.certainty < MIN_CERTAINTY and (p.ear.slips < MANY_SLIPS or p.value[PRESSURE] > FIRM):
+    if p.ear.certainty < MIN_CERTAINTY and (
+        p.ear.slips < MANY_SLIPS or p.value[PLAYING.pressure] > FIRM
+    ):
         return TOO_HEAVY
     return TOO_LIGHT if p.ear.slips >= MANY_SLIPS else SPEAKS
 

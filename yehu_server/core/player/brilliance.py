@@ -8,8 +8,6 @@ shelf at the output raises what lies above the centroid, as far as the calibrati
 has to.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -19,12 +17,7 @@ from yehu_server.core.physics.elementary import exp2, log2
 from yehu_server.core.player.intonation import ALL, in_tables, place_in
 from yehu_server.core.player.note_tables import ABOVE, GAINS, PLAIN
 from yehu_server.core.player.ownership import DEFAULT_RAMP_MS, move_parameter
-from yehu_server.core.player.parameter_indices import (
-    BODY_BRILLIANCE,
-    BRILLIANCE,
-    BRILLIANCE_FREQUENCY,
-    POSITION,
-)
+from yehu_server.core.player.parameter_indices import BODY, PLAYING
 from yehu_server.params.table import find
 
 # The bow whose sound is the model's own: speed times share of Schelleng's limit (m/s), and place.
@@ -42,12 +35,8 @@ LOWERING_MS = 90.0
 def octaves_brighter(effort: float, place: float) -> float:
     """How far (octaves) a note's centroid is to lie above that of the model.
 
-    Parameters
-    ----------
-    effort : float, m/s
-        Speed of the bow times its share of Schelleng's limit; above 0.
-    place : float
-        Distance of the bow from the bridge, as a share of the sounding length.
+    `effort` (m/s) is the bow's speed times its share of Schelleng's limit, above 0; `place` its
+    distance from the bridge, as a share of the sounding length.
     """
     harder = HARDER * log2(effort / PLAIN_EFFORT)
     return float(harder - NEARER * log2(place / PLAIN_PLACE))
@@ -63,7 +52,7 @@ def set_brilliance(p: Any, c: Any, string: int, pitch: float, effort: float) -> 
     plain = measured(p.centroids[string], row, part, PLAIN)
     if not (effort > 0.0 and plain > 0.0):  # no bow, or no calibration
         return
-    aim = plain * exp2(octaves_brighter(effort, p.value[POSITION]))
+    aim = plain * exp2(octaves_brighter(effort, p.value[PLAYING.bow_position]))
     gain_db, below = GAINS[0], 0.0
     for column in range(len(GAINS)):
         above = measured(p.centroids[string], row, part, column)
@@ -73,13 +62,13 @@ def set_brilliance(p: Any, c: Any, string: int, pitch: float, effort: float) -> 
         if above >= aim:
             break
         below = above
-    gain_db *= p.value[BRILLIANCE]
+    gain_db *= p.value[PLAYING.brilliance]
     p.louder_by = louder_by(p.louder[string], row, part, gain_db)
     more_db = p.contours.bright_db
-    move_parameter(p, c, BODY_BRILLIANCE, gain_db + more_db, DEFAULT_RAMP_MS)
+    move_parameter(p, c, BODY.brilliance, gain_db + more_db, DEFAULT_RAMP_MS)
     frequency = ABOVE * plain
-    ramp_ms = LOWERING_MS if frequency < p.sent[BRILLIANCE_FREQUENCY] else DEFAULT_RAMP_MS
-    move_parameter(p, c, BRILLIANCE_FREQUENCY, frequency, ramp_ms)
+    ramp_ms = LOWERING_MS if frequency < p.sent[BODY.brilliance_frequency] else DEFAULT_RAMP_MS
+    move_parameter(p, c, BODY.brilliance_frequency, frequency, ramp_ms)
 
 
 def usual_shelf(centroids: Any, string: int, pitch: float) -> tuple[float, float]:

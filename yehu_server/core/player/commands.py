@@ -15,8 +15,6 @@
 | RELEASE | | 1: held parameters stay so | |
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -28,36 +26,16 @@ from yehu_server.core.controls.record import Controls
 from yehu_server.core.player import direct_bowing, left_hand, notes
 from yehu_server.core.player.ownership import invalidate_sent, ramp_to, release, write_directly
 from yehu_server.core.player.parameter_indices import (
-    ASSIST,
-    BEND,
-    BOW_FORCE,
-    BOW_SPEED,
-    BRILLIANCE,
-    DYNAMICS,
-    EVENNESS,
-    EXPRESSION,
-    INTENSITY,
+    BODY,
+    BOW,
+    ENGINE,
     IS_ENGINES,
     IS_PLAYER_CONTROLLED,
-    LEFT_HAND,
-    LISTENING,
     LOWER_BOUNDS,
     PARAMETER_COUNT,
-    PHRASING,
-    PLAYING_VIBRATO_PRESS,
-    PLAYING_VIBRATO_RATE,
-    POSITION,
-    PRESS,
-    PRESSURE,
-    SEED,
-    SHARPENING_CORRECTION,
+    PLAYING,
     SMOOTH_MS,
-    SPEED,
-    TREMOLO,
     UPPER_BOUNDS,
-    VELOCITY,
-    VIBRATO,
-    VOLUME,
 )
 from yehu_server.core.player.phrasing import begin_sequence
 from yehu_server.core.player.record import Player
@@ -68,12 +46,12 @@ KINDS = (
 RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, DRAW, LIFT, STOP, RELEASE = range(len(KINDS))
 MAX_RAMP = 1e9  # frames of a ramp, ms of a glide
 # What each costs at most, of what EXPRESS does (some 0.3 us; bench/worst.py --mixes).
-COSTS = np.array([2, 2, 2, 1, 8, 8, 5, 2, 2, 2, 2])
+COSTS = np.array([{"express": 1, "begin": 8, "end": 8, "slide": 5}.get(kind, 2) for kind in KINDS])
 COST_TO_FOLLOW, COST_OF_ONE_OF_MANY = 5, 2  # a write that bow and finger follow; END of more keys
 IS_FOLLOWED = np.zeros(PARAMETER_COUNT, np.bool_)
 IS_FOLLOWED[[
-    BEND, SHARPENING_CORRECTION, DYNAMICS, INTENSITY, SPEED, PRESSURE, POSITION, BRILLIANCE,
-    EVENNESS, VELOCITY,
+    PLAYING.bend, PLAYING.dynamics, PLAYING.intensity, PLAYING.speed, PLAYING.pressure,
+    PLAYING.bow_position, PLAYING.brilliance, PLAYING.velocity, ENGINE.calibration, BODY.evenness,
 ]] = True  # fmt: skip
 
 COMMAND = np.dtype(
@@ -91,12 +69,10 @@ COMMAND = np.dtype(
 def apply(
     p: Player, c: Controls, frame: int, kind: int, index: int, value: float, other: float
 ) -> None:
-    """Apply a command, given by its fields, within the ranges of what it moves.
+    """Apply a command, given by its fields, within the ranges of what it moves. Real time: safe.
 
     A command of unknown kind, for an unknown parameter, or with a number that is not finite is
     ignored.
-
-    Real time: safe.
     """
     if not (math.isfinite(value) and math.isfinite(other)):
         return
@@ -109,7 +85,7 @@ def apply(
     elif kind == SLIDE:
         direct_bowing.slide(p, c, clamp_pitch(p, value))
     elif kind == DRAW:
-        direct_bowing.draw(p, c, clamp_to_range(BOW_SPEED, value), clamp_to_range(BOW_FORCE, other))
+        direct_bowing.draw(p, c, clamp_to_range(BOW.speed, value), clamp_to_range(BOW.force, other))
     elif kind == LIFT:
         direct_bowing.lift(p, c)
     elif kind == STOP:
@@ -186,36 +162,42 @@ def set_for_next_note(p: Any, c: Any, index: int, value: float) -> None:
 @compiled_exactly
 def apply_parameter_change(p: Any, c: Any, index: int) -> None:
     """Apply a changed parameter of the player to the sounding note."""
-    if index in (BEND, SHARPENING_CORRECTION):
+    if index in (PLAYING.bend, ENGINE.calibration):
         notes.follow_bend(p, c)
-    elif index == PRESS:
+    elif index == PLAYING.press:
         left_hand.press(p, c, notes.min_press(p, max(p.string, 0)), left_hand.LANDING_MS)
-    elif index in (DYNAMICS, INTENSITY):
+    elif index in (PLAYING.dynamics, PLAYING.intensity):
         notes.update_bow(p, c)
         notes.follow_bend(p, c)
         notes.set_level(p, c)
-        if p.value[PHRASING] > 0.0:  # force and place go with the speed
+        if p.value[PLAYING.phrasing] > 0.0:  # force and place go with the speed
             notes.set_bow_pressure(p, c)
-    elif index == SPEED:  # a faster bow changes the pitch
+    elif index == PLAYING.speed:  # a faster bow changes the pitch
         notes.update_bow(p, c)
         notes.follow_bend(p, c)
-    elif index in (PRESSURE, POSITION):
+    elif index in (PLAYING.pressure, PLAYING.bow_position):
         notes.set_bow_pressure(p, c)
-    elif index == TREMOLO:
+    elif index == PLAYING.tremolo:
         notes.update_bow(p, c)
-    elif index in (VIBRATO, PLAYING_VIBRATO_PRESS, PLAYING_VIBRATO_RATE, PHRASING, LEFT_HAND):
+    elif index in (
+        PLAYING.vibrato,
+        PLAYING.vibrato_press,
+        PLAYING.vibrato_rate,
+        PLAYING.phrasing,
+        PLAYING.left_hand,
+    ):
         notes.rock(p, c)
-    elif index == ASSIST:
+    elif index == PLAYING.assist:
         notes.set_assist(p, c)
-    elif index in (VOLUME, EXPRESSION):
+    elif index in (PLAYING.volume, PLAYING.expression):
         notes.set_level(p, c)
-    elif index in (BRILLIANCE, EVENNESS):
+    elif index in (PLAYING.brilliance, BODY.evenness):
         notes.set_loudness_balance(p, c)
-    elif index == VELOCITY:
+    elif index == PLAYING.velocity:
         notes.update_bow(p, c)
         notes.follow_bend(p, c)
         notes.set_loudness_balance(p, c)
-    elif index == LISTENING and p.value[LISTENING] == 0.0:
+    elif index == PLAYING.listening and p.value[PLAYING.listening] == 0.0:
         notes.reset_corrections(p, c)
-    elif index == SEED:
-        begin_sequence(p, int(p.value[SEED]))
+    elif index == ENGINE.seed:
+        begin_sequence(p, int(p.value[ENGINE.seed]))

@@ -1,7 +1,5 @@
 """Direct bowing: whoever plays draws the bow and slides the finger, without notes. Compiled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
@@ -15,16 +13,13 @@ from yehu_server.core.player.ownership import (
     take_all_back,
     write_directly,
 )
-from yehu_server.core.player.parameter_indices import BOW_FORCE, BOW_SIDE, BOW_SPEED, POSITION
+from yehu_server.core.player.parameter_indices import BOW, PLAYING
 from yehu_server.core.player.right_hand import requested_speed
 
 
 @compiled_exactly
 def slide(p: Any, c: Any, pitch: float) -> None:
-    """Slide the finger to a pitch (fractional MIDI note) within range.
-
-    The sounding note slides; in silence, the finger waits there for the bow.
-    """
+    """Slide the finger to a pitch within range; in silence, it waits there for the bow."""
     if p.sounding >= 0:
         p.held_pitch[p.sounding] = pitch
         follow_bend(p, c)
@@ -33,7 +28,7 @@ def slide(p: Any, c: Any, pitch: float) -> None:
     string, position = choose(p, pitch, False, False, requested_speed(p))
     left_hand.stop(p, c, string, position, 0.0, BEND_RAMP_MS)
     if p.is_direct != 0:
-        ramp_to(p, c, BOW_SIDE, side_of(p), DEFAULT_RAMP_MS)
+        ramp_to(p, c, BOW.side, side_of(p), DEFAULT_RAMP_MS)
         set_loudness_balance(p, c)
 
 
@@ -43,15 +38,15 @@ def draw(p: Any, c: Any, speed: float, force: float) -> None:
 
     Takes the bow over as direct writes do; 0 and 0 lift it.
     """
-    write_directly(p, c, BOW_SPEED, speed, False)
-    write_directly(p, c, BOW_FORCE, force, False)
+    write_directly(p, c, BOW.speed, speed, False)
+    write_directly(p, c, BOW.force, force, False)
     p.is_direct = 1 if speed != 0.0 or force != 0.0 else 0
     side = 0.0
     if p.is_direct != 0:
         side = 1.0 if p.string < 0 else side_of(p)
-    write_directly(p, c, BOW_SIDE, side, False)
+    write_directly(p, c, BOW.side, side, False)
     p.speed = abs(speed)
-    p.effort = force * p.value[POSITION] / c.schelleng[max(p.string, 0)]
+    p.effort = force * p.value[PLAYING.bow_position] / c.schelleng[max(p.string, 0)]
     set_loudness_balance(p, c)
 
 
@@ -59,7 +54,7 @@ def draw(p: Any, c: Any, speed: float, force: float) -> None:
 def lift(p: Any, c: Any) -> None:
     """Lift a bow drawn directly, and return it to the player."""
     if p.is_direct != 0:
-        ramp_to(p, c, BOW_SPEED, 0.0, DEFAULT_RAMP_MS)
-        ramp_to(p, c, BOW_SIDE, 0.0, DEFAULT_RAMP_MS)
+        ramp_to(p, c, BOW.speed, 0.0, DEFAULT_RAMP_MS)
+        ramp_to(p, c, BOW.side, 0.0, DEFAULT_RAMP_MS)
     take_all_back(p)
     p.is_direct = 0

@@ -6,8 +6,6 @@ hand does goes together: a bow that is drawn faster is pressed harder. `/playing
 much, and `/engine/seed` which; a parameter that somebody else moves is steady.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -24,16 +22,7 @@ from yehu_server.core.controls.record import (
 )
 from yehu_server.core.physics.elementary import cos, elementwise, exp, pseudorandom
 from yehu_server.core.player.ear import HOP_S
-from yehu_server.core.player.parameter_indices import (
-    BOW_FORCE,
-    BOW_POSITION,
-    BOW_PRESSURE,
-    BOW_SPEED,
-    FINGER_POSITION,
-    FINGER_PRESS,
-    PHRASING,
-    VARIATION,
-)
+from yehu_server.core.player.parameter_indices import BOW, FINGER_POSITION, FINGER_PRESS, PLAYING
 from yehu_server.core.player.stroke_contours import QUANTITIES
 
 # Standard deviations at full variation, in the order of ``controls.record``. By ear.
@@ -75,10 +64,7 @@ def resonance(hz: float, width_hz: float) -> tuple[float, float, float]:
 TREMOR_A_1, TREMOR_A_2, TREMOR_NOISE = resonance(TREMOR_HZ, WIDTH_HZ)
 SLOW_A_1, SLOW_A_2, SLOW_NOISE = resonance(SLOW_HZ, SLOW_WIDTH_HZ)
 HANDS = 2
-DECAY_PER_HOP, NEGLIGIBLE = (
-    0.8,
-    1e-6,
-)  # how a hand that does not play comes to rest
+DECAY_PER_HOP, NEGLIGIBLE = (0.8, 1e-6)  # how a hand that does not play comes to rest
 DETECTION_DELAY_HOPS = 2  # of what a finger does, by the ear
 SEQUENCE_OFFSET = 1 << 31  # of the seed's numbers; those before are the notes' (``phrasing``)
 
@@ -112,7 +98,7 @@ def next_random(p: Any) -> float:
 @compiled_exactly
 def advance_drift(p: Any, c: Any) -> None:
     """Advance drift and tremor of the hands by one hop."""
-    u, amount = p.drift_state, p.value[VARIATION]
+    u, amount = p.drift_state, p.value[PLAYING.variation]
     for hand in range(HANDS):
         now, before = u.tremor[hand, 0], u.tremor[hand, 1]
         u.tremor[hand, 0] = TREMOR_A_1 * now - TREMOR_A_2 * before + TREMOR_NOISE * next_random(p)
@@ -136,7 +122,7 @@ def advance_drift(p: Any, c: Any) -> None:
             before, contour = contours.before[i], contours.value[i]
         own = amount * (DRIFT[i] * drift + TREMOR[i] * u.tremor[HAND[i], 0])
         if i == CENTS_DRIFT:
-            own += amount * MORE_CENTS * p.value[PHRASING] * u.within[0]
+            own += amount * MORE_CENTS * p.value[PLAYING.phrasing] * u.within[0]
         if amount == 0.0 or p.sounding < 0 or not is_own:
             left = c.drift[i] - (before if is_own else 0.0)
             own = DECAY_PER_HOP * left if abs(left) > NEGLIGIBLE else 0.0
@@ -160,7 +146,7 @@ def advance_drift(p: Any, c: Any) -> None:
 @compiled_exactly
 def vary_vibrato(p: Any, c: Any) -> None:
     """Let the vibrato's rate and depth follow the deviates of its cycle."""
-    u, amount = p.drift_state, p.value[VARIATION] if p.sounding >= 0 else 0.0
+    u, amount = p.drift_state, p.value[PLAYING.variation] if p.sounding >= 0 else 0.0
     if c.vibrato < u.phase:
         u.rate_deviate, u.depth_deviate = next_cycle_deviate(p, 0), next_cycle_deviate(p, 1)
     u.phase = c.vibrato
@@ -203,11 +189,11 @@ def sum_of(numbers: Any) -> float:
 @compiled_exactly
 def is_owned(p: Any, drift: int) -> bool:
     """Whether the player moves what drifts, and nobody else."""
-    index = BOW_SPEED
+    index = BOW.speed
     if drift == FORCE_DRIFT:
-        index = BOW_PRESSURE if p.taken[BOW_FORCE] == 0 and p.is_held[BOW_FORCE] == 0 else BOW_FORCE
+        index = BOW.pressure if p.taken[BOW.force] == 0 and p.is_held[BOW.force] == 0 else BOW.force
     elif drift == POSITION_DRIFT:
-        index = BOW_POSITION
+        index = BOW.position
     elif drift == CENTS_DRIFT:
         index = FINGER_POSITION[p.finger]
     elif drift == PRESS_DRIFT:

@@ -7,8 +7,6 @@ a parabola through the best three gives the period. Measured on 12 notes bowed i
 against the spectrum of the sound: median error 0.03 cents, 90 % within 0.1.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -17,15 +15,15 @@ import numpy as np
 from yehu_server.compile.jit import compiled, compiled_exactly
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.physics.elementary import exp2, log2
-from yehu_server.core.player.parameter_indices import LISTENING, POSITION, SPEED
+from yehu_server.core.player.parameter_indices import PLAYING
 
 
 @compiled_exactly
 def learning_bin(p: Any, string: int, pitch: float) -> tuple[int, int, int]:
     """Where what is learnt of a pitch is kept: numbers of pitch, bow position and bow speed."""
     row = int(np.rint(2.0 * (pitch - p.open_note[string]))) + 2  # a bent one may be below the open
-    position_bin = int(np.rint(4.0 * log2(p.value[POSITION] / 0.05)))
-    speed_bin = int(np.rint(2.0 * log2(p.value[SPEED] / 0.03)))
+    position_bin = int(np.rint(4.0 * log2(p.value[PLAYING.bow_position] / 0.05)))
+    speed_bin = int(np.rint(2.0 * log2(p.value[PLAYING.speed] / 0.03)))
     return (
         min(max(row, 0), p.learnt.shape[1] - 1),
         min(max(position_bin, 0), p.learnt.shape[2] - 1),
@@ -38,7 +36,9 @@ def learnt_cents(p: Any, string: int, pitch: float) -> float:
     """What was learnt of a pitch on a string (cents of sharpening)."""
     row, position_bin, speed_bin = learning_bin(p, string, pitch)
     return (
-        float(p.learnt[string, row, position_bin, speed_bin]) if p.value[LISTENING] > 0.0 else 0.0
+        float(p.learnt[string, row, position_bin, speed_bin])
+        if p.value[PLAYING.listening] > 0.0
+        else 0.0
     )
 
 
@@ -51,10 +51,7 @@ DELAY_FRAMES = CHUNK  # frames that a hearing lags behind: by then they are comp
 SEARCH_FRACTION = 0.06  # a period is searched so far from the expected one, as a part of it
 PITCH_CERTAINTY = 0.9  # certainty from which the pitch is known
 SEARCH_LAGS = 3  # samples about the last lag
-SLIP_BEGIN_FRACTION, SLIP_END_FRACTION = (
-    0.4,
-    0.2,
-)  # of the largest velocity
+SLIP_BEGIN_FRACTION, SLIP_END_FRACTION = (0.4, 0.2)  # of the largest velocity
 
 EAR = np.dtype(
     [

@@ -1,7 +1,5 @@
 """The string and finger position for a pitch. Compiled."""
 
-from __future__ import annotations
-
 from enum import Enum
 from typing import Any
 
@@ -10,7 +8,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.ear import learnt_cents
 from yehu_server.core.player.intonation import position_of
-from yehu_server.core.player.parameter_indices import STRING
+from yehu_server.core.player.parameter_indices import PLAYING
 
 # Semitones around an open string that are played without a finger: no finger fits nearer to the
 # loop than 8 mm, which is this interval.
@@ -33,31 +31,18 @@ OPEN_FOR = np.array([OPEN_WITHIN, ON_PITCH_WITHIN, 0.0])  # semitones, for each 
 @compiled_exactly
 def requested_string(p: Any) -> int:
     """The string asked for, 0 or 1; -1 for either."""
-    return int(np.rint(p.value[STRING])) - 1
+    return int(np.rint(p.value[PLAYING.string])) - 1
 
 
 @compiled_exactly
 def choose(p: Any, pitch: float, beats: bool, shakes: bool, speed: float) -> tuple[int, float]:
-    """Choose the fingering of a pitch (fractional MIDI note) at a bow speed (m/s).
+    """Choose the string and the finger's position (m, or OPEN) of a pitch at a bow speed (m/s).
 
     Below the open outer string it is on the inner one; from there up on the outer, unless the
     finger is on the inner string and nearer to the pitch there, as far as that is stopped. A string
-    that is asked for is taken wherever it has the pitch.
-
-    Parameters
-    ----------
-    beats : bool
-        Whether another finger beats above it, as in a trill, for which the inner string is too
-        short there.
-    shakes : bool
-        Whether it is to have a vibrato, for which the open string is stopped on the other.
-
-    Returns
-    -------
-    string : int
-        0 (inner) or 1 (outer).
-    position : float
-        Of the finger (m), or OPEN.
+    that is asked for is taken wherever it has the pitch. Where a finger `beats` above it, as in a
+    trill, the inner string is too short there; where it `shakes`, in a vibrato, the open string is
+    stopped on the other.
     """
     command = requested_string(p)
     if pitch < p.open_note[0] + OPEN_WITHIN:

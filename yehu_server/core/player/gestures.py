@@ -4,8 +4,6 @@ The steps are those of ``params.articulations``. A note's gesture begins with it
 ``articulating`` checks which steps are due. An ordinary note is shaped as phrasing says.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -13,19 +11,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.slots import SPEED as BOW_SPEED
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.physics.elementary import exp, log10
 from yehu_server.core.player.harmonics import GAINS_DB, NONE, node_of, string_of
-from yehu_server.core.player.parameter_indices import (
-    ARTICULATION,
-    NOTE_LENGTH,
-    PHRASING,
-    RELEASE,
-    TREMOLO,
-    TREMOLO_DEPTH,
-    VARIATION,
-)
-from yehu_server.core.player.parameter_indices import ATTACK as ATTACK_MS
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.phrasing import (
     HURRIED_ATTACK_MS,
     HURRIED_RELEASE,
@@ -174,9 +163,9 @@ def begin_gesture(p: Any, c: Any, is_slur: bool) -> None:
     """Begin the gesture of a note; on a slur the bow goes on as it is."""
     g = p.gesture
     rest(g)
-    number = int(np.rint(p.value[ARTICULATION]))
+    number = int(np.rint(p.value[PLAYING.articulation]))
     g.row = number if 0 <= number < ROWS else ORDINARY
-    if g.row == ORDINARY and p.value[PHRASING] > 0.0:
+    if g.row == ORDINARY and p.value[PLAYING.phrasing] > 0.0:
         shape(p, c)
     g.attack *= SHAPES[g.row, ATTACK]
     g.time_factor = time_factor_of(p, g.row)
@@ -224,11 +213,11 @@ def shape(p: Any, c: Any) -> None:
     in ``contours``.
     """
     g = p.gesture
-    amount = min(p.value[PHRASING] / USUAL_PHRASING, 1.5)
-    length = p.value[NOTE_LENGTH] if p.value[NOTE_LENGTH] > 0.0 else USUAL_S
-    uneven = 1.0 + UNEVEN_ATTACK * deviate(p) * min(4.0 * p.value[VARIATION], 1.0)
+    amount = min(p.value[PLAYING.phrasing] / USUAL_PHRASING, 1.5)
+    length = p.value[PLAYING.note_length] if p.value[PLAYING.note_length] > 0.0 else USUAL_S
+    uneven = 1.0 + UNEVEN_ATTACK * deviate(p) * min(4.0 * p.value[PLAYING.variation], 1.0)
     factor = TURNING / max(struck_attack(p), 1.0)
-    if c.value[BOW_SPEED] == 0.0:
+    if c.value[SLOTS.bow_speed] == 0.0:
         longer = min(length / LONG_S, 1.0)
         factor = SHORT_ATTACK + (LONG_ATTACK - SHORT_ATTACK) * longer
     factor *= max(uneven, 0.4)
@@ -238,7 +227,7 @@ def shape(p: Any, c: Any) -> None:
 @compiled_exactly
 def note_length(p: Any, row: int) -> float:
     """The length of the note (s), or what is assumed of it."""
-    known = p.value[NOTE_LENGTH]
+    known = p.value[PLAYING.note_length]
     return float(known if known > 0.0 else SHAPES[row, LENGTH])
 
 
@@ -248,7 +237,7 @@ def time_factor_of(p: Any, row: int) -> float:
 
     A gesture that repeats keeps its times.
     """
-    length_ms = 1e3 * p.value[NOTE_LENGTH]
+    length_ms = 1e3 * p.value[PLAYING.note_length]
     factor = 1.0
     if length_ms == 0.0 or SHAPES[row, REPEAT_MS] > 0.0:
         return factor
@@ -286,7 +275,7 @@ def is_immediate(step: Any) -> bool:
 @compiled_exactly
 def attack_ms(p: Any) -> float:
     """The time in which a lifted bow reaches its speed and force."""
-    usual = p.value[ATTACK_MS] * struck_attack(p) * p.gesture.attack
+    usual = p.value[PLAYING.attack] * struck_attack(p) * p.gesture.attack
     return float(usual + p.hurry * min(HURRIED_ATTACK_MS - usual, 0.0))
 
 
@@ -294,24 +283,24 @@ def attack_ms(p: Any) -> float:
 def release_ms(p: Any, c: Any) -> float:
     """The time in which the bow leaves the string: longer after a long note, as phrasing says."""
     long = min((c.frame - p.note_began) / (LONG_S * p.rate), 1.0)
-    eased = min(p.value[PHRASING] / USUAL_PHRASING, 1.5) * EASED_RELEASE * long
+    eased = min(p.value[PLAYING.phrasing] / USUAL_PHRASING, 1.5) * EASED_RELEASE * long
     if p.gesture.row != ORDINARY:
         eased = 0.0
-    return float(p.value[RELEASE] * hurried(p, HURRIED_RELEASE) * (1.0 + eased))
+    return float(p.value[PLAYING.release] * hurried(p, HURRIED_RELEASE) * (1.0 + eased))
 
 
 @compiled_exactly
 def tremolo_of(p: Any) -> float:
     """Strokes a second: as requested, else the gesture's."""
-    requested = p.value[TREMOLO]
+    requested = p.value[PLAYING.tremolo]
     return float(requested if requested > 0.0 else SHAPES[p.gesture.row, STROKES])
 
 
 @compiled_exactly
 def tremolo_depth_of(p: Any) -> float:
     """How deep a tremolo is: as requested where there is a request for one, else the gesture's."""
-    requested = p.value[TREMOLO_DEPTH]
-    return float(requested if p.value[TREMOLO] > 0.0 else SHAPES[p.gesture.row, DEPTH])
+    requested = p.value[PLAYING.tremolo_depth]
+    return float(requested if p.value[PLAYING.tremolo] > 0.0 else SHAPES[p.gesture.row, DEPTH])
 
 
 @compiled_exactly

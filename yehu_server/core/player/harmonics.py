@@ -5,8 +5,6 @@ fourth of the outer, others come. Measured (tests/scores/test_harmonics.py). A k
 finger touches: what a finger that presses there would sound.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,9 +1,4 @@
-"""The keys that one instrument holds, in the order pressed, and the one that sounds. Compiled.
-
-Those of the part, which may be a section's, are in ``midi.part_keys``.
-"""
-
-from __future__ import annotations
+"""The keys that one instrument holds, in order (a part's: ``midi.part_keys``). Compiled."""
 
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Finger positions for pitches, and gains for even loudness, from a calibration. Compiled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,7 +8,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.physics.elementary import exp2, log
 from yehu_server.core.physics.layout import STRINGS
 from yehu_server.core.player.note_tables import OPEN_NOTES, PITCHES, ROWS_OF_A_YEHU, SPEEDS
-from yehu_server.core.player.parameter_indices import SHARPENING_CORRECTION
+from yehu_server.core.player.parameter_indices import ENGINE
 
 Array = Any
 
@@ -35,7 +33,7 @@ def position_of(p: Any, string: int, pitch: float, speed: float, sharper: float)
     measured sharpening.
     """
     stopped = in_tables(p, string, pitch)
-    sharp = sharper + p.value[SHARPENING_CORRECTION] * read(
+    sharp = sharper + p.value[ENGINE.calibration] * read(
         p.sharpening[string], STOPPED[string], stopped, speed
     )
     frequency = p.a4 * exp2((pitch - sharp / 100.0 - 69.0) / 12.0)

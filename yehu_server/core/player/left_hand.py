@@ -4,8 +4,6 @@ A step puts the next finger down while the one before still holds, and then lift
 the string is never open in between. A slide moves the finger that is down.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
@@ -16,7 +14,7 @@ from yehu_server.core.player.parameter_indices import (
     FINGER_COUNT,
     FINGER_POSITION,
     FINGER_PRESS,
-    PRESS,
+    PLAYING,
 )
 from yehu_server.core.player.phrasing import STEP_MS, varied_landing
 
@@ -41,17 +39,10 @@ def side_of(p: Any) -> float:
 
 @compiled_exactly
 def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide_ms: float) -> None:
-    """Stop a string, or leave it open.
+    """Stop a string at a position (m, or OPEN) with at least the force (N) that the pitch needs.
 
-    Parameters
-    ----------
-    position : float
-        Of the finger (m), or OPEN.
-    least_press : float
-        Least finger force (N) that the sounding pitch needs.
-    slide_ms : float
-        Time in which the finger that is down slides there; `phrasing.STEP_MS` for a step. On
-        another string it always steps.
+    The finger that is down slides there in a time; `phrasing.STEP_MS` for a step. On another string
+    it always steps.
     """
     before = OPEN if p.string < 0 else p.position
     landing_ms = LANDING_MS
@@ -82,7 +73,7 @@ def press(p: Any, c: Any, least_press: float, landing_ms: float) -> None:
     """Set the requested finger force, or lift the finger where the string is open."""
     force = 0.0
     if p.string >= 0 and p.position != OPEN:
-        force = max(p.value[PRESS], least_press) if p.gesture.node == NONE else TOUCH_N
+        force = max(p.value[PLAYING.press], least_press) if p.gesture.node == NONE else TOUCH_N
     if force != p.pressing or force > 0.0:
         if p.pressing == 0.0:
             landing_ms = varied_landing(p, landing_ms)

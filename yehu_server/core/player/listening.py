@@ -1,7 +1,5 @@
 """The player's work of each 5 ms: drift, gestures, the bow's end, ear, corrections. Compiled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,14 +8,14 @@ from yehu_server.compile.jit import compiled_exactly, native
 from yehu_server.compile.memory import carray
 from yehu_server.core.controls.kernel_controls import vibrato_at
 from yehu_server.core.controls.record import Controls
-from yehu_server.core.controls.slots import DEPTH, RATE, SIDE
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.physics.elementary import exp2
 from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import DELAY_FRAMES, EAR_SAMPLES, hear
 from yehu_server.core.player.notes import is_touched, reverse_bow_at_end, sounding_pitch
-from yehu_server.core.player.parameter_indices import LISTENING
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.record import Player
 from yehu_server.core.player.stroke_contours import advance_contours
 from yehu_server.core.player.sway import advance_sway
@@ -26,19 +24,14 @@ from yehu_server.core.player.tuning_by_ear import tune
 
 @compiled_exactly
 def listen(p: Any, c: Any, heard: Any) -> None:
-    """Listen to the bowed string, and act on what is heard.
+    """Listen to the bowed string (of ``ear.remember``), and act on what is heard.
 
     While the bow is drawn directly, the string is analysed but nothing is corrected.
-
-    Parameters
-    ----------
-    heard : ndarray
-        What `ear.remember` keeps.
     """
     is_direct = p.is_direct != 0
-    is_bowed = c.value[SIDE] != 0.0 if is_direct else p.sounding >= 0 and p.side != 0.0
+    is_bowed = c.value[SLOTS.bow_side] != 0.0 if is_direct else p.sounding >= 0 and p.side != 0.0
     is_bowed = is_bowed and not is_touched(p)  # a harmonic is where its node is
-    if p.value[LISTENING] == 0.0 or not is_bowed or c.frame < p.settled_at:
+    if p.value[PLAYING.listening] == 0.0 or not is_bowed or c.frame < p.settled_at:
         p.ear.certainty = 0.0
         return
     pitch = sounding_pitch(p)
@@ -52,23 +45,18 @@ def listen(p: Any, c: Any, heard: Any) -> None:
 @compiled_exactly
 def vibrato_semitones(p: Any, c: Any) -> float:
     """The vibrato in the middle of what is heard now."""
-    if c.value[DEPTH] == 0.0:
+    if c.value[SLOTS.vibrato_depth] == 0.0:
         return 0.0
     ago = (DELAY_FRAMES + p.ear.span) / p.rate
-    phase = c.vibrato - c.vibrato_rate_factor * c.value[RATE] * ago
-    return float(vibrato_at(c, phase) * c.vibrato_depth_factor * c.value[DEPTH] / 100.0)
+    phase = c.vibrato - c.vibrato_rate_factor * c.value[SLOTS.vibrato_rate] * ago
+    return float(
+        vibrato_at(c, phase) * c.vibrato_depth_factor * c.value[SLOTS.vibrato_depth] / 100.0
+    )
 
 
 @native
 def update_player(p: Player, c: Controls, sound: Any) -> None:
-    """Do the player's work of one hop, at a frame of ``ear.next``.
-
-    Parameters
-    ----------
-    sound : pointer to what `ear.remember` keeps
-
-    Real time: safe.
-    """
+    """Do the player's work of one hop, at a frame of ``ear.next``. Real time: safe."""
     p.ear.next += p.ear.hop
     advance_contours(p, c)
     advance_drift(p, c)

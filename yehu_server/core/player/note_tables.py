@@ -1,7 +1,5 @@
 """The measurements that tune an instrument, as the player reads them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,16 +1,11 @@
-"""Notes: how they begin, follow the parameters, and end. Compiled.
-
-One note sounds at a time, the one pressed last.
-"""
-
-from __future__ import annotations
+"""Notes begin, follow the parameters, and end; the one pressed last sounds. Compiled."""
 
 import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import start_ramp
-from yehu_server.core.controls.slots import SILENCE, SPEED
+from yehu_server.core.controls.slots import SILENCE, SLOTS
 from yehu_server.core.player import left_hand, right_hand, stroke_contours, velocity, vibrato
 from yehu_server.core.player.bow_length import CHANGE_MS, is_at_its_end, plan_stroke
 from yehu_server.core.player.bowing import MIN_PRESS, bowing_value
@@ -39,24 +34,7 @@ from yehu_server.core.player.ownership import (
     take_all_back,
     take_back,
 )
-from yehu_server.core.player.parameter_indices import (
-    ASSIST,
-    ATTACK,
-    BEND,
-    BOW_ASSIST,
-    BOW_SIDE,
-    BOW_SPEED,
-    EXPRESSION,
-    NOTE_LENGTH,
-    OUTPUT_LEVEL,
-    PIZZICATO,
-    PORTAMENTO,
-    PORTAMENTO_TIME,
-    POSITION,
-    PRESSURE,
-    SMOOTH_MS,
-    VOLUME,
-)
+from yehu_server.core.player.parameter_indices import BOW, OUTPUT, PLAYING, SMOOTH_MS
 from yehu_server.core.player.phrasing import (
     SCOOP_MS,
     STEP_MS,
@@ -127,17 +105,14 @@ def end(p: Any, c: Any, channel: int, key: float, more_end: bool) -> None:
 
 @compiled_exactly
 def stop_sound(p: Any, c: Any, is_panic: bool) -> None:
-    """Lift bow and fingers, and fade the sound out at once.
-
-    Unless a note sounds; but in a panic all notes end.
-    """
+    """Lift bow and fingers and fade out, unless a note sounds; a panic ends all notes."""
     if is_panic:
         p.held, p.sounding = 0, SILENT
     if p.sounding != SILENT:
         return
     p.is_direct = 0
-    take_back(p, BOW_SPEED)
-    take_back(p, BOW_SIDE)
+    take_back(p, BOW.speed)
+    take_back(p, BOW.side)
     right_hand.lift(p, c, LIFTING_MS)
     left_hand.lift_all(p, c)
     p.finger_pitch = p.open_note[0]
@@ -195,7 +170,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
         right_hand.pluck(p, c, side_of(p))
     else:
         ramp_ms = CHANGE_MS if turns else SLURRED_MS
-        draw(p, c, ramp_ms if is_slur else p.value[ATTACK])
+        draw(p, c, ramp_ms if is_slur else p.value[PLAYING.attack])
 
 
 @compiled_exactly
@@ -205,7 +180,7 @@ def scooped(p: Any, c: Any, string: int, position: float, rise: float) -> float:
     Returns the finger position (m) there, or the one given where the note has no such slide.
     """
     g = p.gesture
-    is_free = FINGER_STEP_COUNT[g.row] == 0 and g.bend == p.value[BEND] == 0.0
+    is_free = FINGER_STEP_COUNT[g.row] == 0 and g.bend == p.value[PLAYING.bend] == 0.0
     if not is_free or position == OPEN or p.finger_pitch < p.open_note[string] + 1.0:
         return position
     scoop = scoop_of(p, c, rise)
@@ -221,9 +196,9 @@ def slide_into_note_ms(p: Any, c: Any) -> float:
     """Time of the slide that a note begins with; STEP_MS where the finger steps."""
     if is_touched(p):
         return STEP_MS
-    if is_on(p, PORTAMENTO):
-        return float(p.value[PORTAMENTO_TIME])
-    is_bent = abs(p.value[BEND]) > MAX_SEMITONES_FROM_KEY
+    if is_on(p, PLAYING.portamento):
+        return float(p.value[PLAYING.portamento_time])
+    is_bent = abs(p.value[PLAYING.bend]) > MAX_SEMITONES_FROM_KEY
     if is_bent or is_plucked(p) or not BEARS_SLIDE[p.gesture.row]:
         return STEP_MS
     return slide_of_leap_ms(p, c, note_pitch(p) - p.finger_pitch)
@@ -247,7 +222,7 @@ def reverse_bow_at_end(p: Any, c: Any) -> None:
     """Change the direction of a bow that reaches its end."""
     if p.sounding < 0 or tremolo_of(p) != 0.0:
         return
-    if is_at_its_end(p, c, abs(c.value[SPEED])):
+    if is_at_its_end(p, c, abs(c.value[SLOTS.bow_speed])):
         p.direction = -p.direction
         draw(p, c, CHANGE_MS)
 
@@ -264,7 +239,7 @@ def note_pitch(p: Any) -> float:
     """Pitch (fractional MIDI note) of the sounding key, with its bend; 0 in silence."""
     if p.sounding < 0:
         return 0.0
-    bend = p.value[BEND] + p.gesture.bend
+    bend = p.value[PLAYING.bend] + p.gesture.bend
     return float(p.held_pitch[p.sounding] + bend + varied_semitones(p))
 
 
@@ -285,7 +260,7 @@ def is_on(p: Any, index: int) -> bool:
 @compiled_exactly
 def is_plucked(p: Any) -> bool:
     """Whether the note is plucked."""
-    return is_on(p, PIZZICATO) or bool(SHAPES[p.gesture.row, IS_PLUCKED])
+    return is_on(p, PLAYING.pizzicato) or bool(SHAPES[p.gesture.row, IS_PLUCKED])
 
 
 @compiled_exactly
@@ -300,16 +275,16 @@ def is_touched(p: Any) -> bool:
 @compiled_exactly
 def set_assist(p: Any, c: Any) -> None:
     """Let the bow's force follow its speed as far as is asked for."""
-    move_parameter(p, c, BOW_ASSIST, p.value[ASSIST], DEFAULT_RAMP_MS)
+    move_parameter(p, c, BOW.assist, p.value[PLAYING.assist], DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
 def set_level(p: Any, c: Any) -> None:
     """Set the output's level."""
-    level = (p.value[VOLUME] * p.value[EXPRESSION]) ** 2
+    level = (p.value[PLAYING.volume] * p.value[PLAYING.expression]) ** 2
     dynamics = right_hand.requested_dynamics(p)
     level *= dynamics * math.sqrt(dynamics)  # to the DYNAMICS_EXPONENT
-    move_parameter(p, c, OUTPUT_LEVEL, level, DEFAULT_RAMP_MS)
+    move_parameter(p, c, OUTPUT.level, level, DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -323,7 +298,7 @@ def draw(p: Any, c: Any, ramp_ms: float) -> None:
 def update_bow(p: Any, c: Any) -> None:
     """Draw as parameters now say, but let a move of the gesture take its time."""
     left_ms = 1e3 * (p.gesture.move_ends - (c.frame - p.note_began) / p.rate)
-    draw(p, c, max(left_ms, SMOOTH_MS[BOW_SPEED]))
+    draw(p, c, max(left_ms, SMOOTH_MS[BOW.speed]))
 
 
 @compiled_exactly
@@ -339,7 +314,7 @@ def min_press(p: Any, string: int) -> float:
     if p.sounding < 0:
         return 0.0
     stopped = in_tables(p, string, note_pitch(p))
-    return bowing_value(p.bowing_table, string, p.value[POSITION], stopped, MIN_PRESS)
+    return bowing_value(p.bowing_table, string, p.value[PLAYING.bow_position], stopped, MIN_PRESS)
 
 
 @compiled_exactly
@@ -347,7 +322,7 @@ def set_loudness_balance(p: Any, c: Any) -> None:
     """Set colour, and the gain that evens out the loudness of notes, as the bow is drawn."""
     if p.sounding >= 0 or p.is_direct != 0:
         pitch = note_pitch(p) if p.sounding >= 0 else p.finger_pitch
-        speed, effort = requested_speed(p), requested_speed(p) * p.value[PRESSURE]
+        speed, effort = requested_speed(p), requested_speed(p) * p.value[PLAYING.pressure]
         effort *= right_hand.arm(p, right_hand.ARM_FORCE)
         if p.is_direct != 0:
             speed, effort = p.speed, p.effort
@@ -373,7 +348,7 @@ def follow_bend(p: Any, c: Any) -> None:
 def rock(p: Any, c: Any) -> None:
     """Rock the finger as requested now; an open string's note is stopped on the other for it."""
     vibrato.set_vibrato(p, c)
-    is_short = 0.0 < p.value[NOTE_LENGTH] < vibrato.AUDIBLE_FROM_S
+    is_short = 0.0 < p.value[PLAYING.note_length] < vibrato.AUDIBLE_FROM_S
     is_open = p.sounding >= 0 and p.string == 1 and p.position == OPEN
     if not is_open or is_short or is_touched(p) or is_plucked(p) or not vibrato.is_requested(p):
         return

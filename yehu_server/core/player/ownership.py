@@ -5,8 +5,6 @@ A parameter written with ``hold`` keeps its value, whatever notes and controller
 (decisions/0006).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -14,13 +12,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.ramps import start_ramp
-from yehu_server.core.player.parameter_indices import (
-    BOW_ASSIST,
-    BOW_FORCE,
-    PARAMETER_COUNT,
-    SLOT_OF,
-    SMOOTH_MS,
-)
+from yehu_server.core.player.parameter_indices import BOW, PARAMETER_COUNT, SLOT_OF, SMOOTH_MS
 
 DEFAULT_RAMP_MS = -1.0  # a sentinel: the ramp time of the parameter itself
 
@@ -50,14 +42,11 @@ def invalidate_sent(p: Any, index: int) -> None:
 
 @compiled_exactly
 def write_directly(p: Any, c: Any, index: int, value: float, hold: bool) -> None:
-    """Take a parameter over and move it; `hold` keeps it through notes.
-
-    Newtons are heard only without assist.
-    """
+    """Take a parameter over and move it; `hold` keeps it. Newtons are heard only without assist."""
     mark_taken(p, index, hold)
-    if index == BOW_FORCE:
-        mark_taken(p, BOW_ASSIST, hold)
-        ramp_to(p, c, BOW_ASSIST, 0.0, DEFAULT_RAMP_MS)
+    if index == BOW.force:
+        mark_taken(p, BOW.assist, hold)
+        ramp_to(p, c, BOW.assist, 0.0, DEFAULT_RAMP_MS)
     ramp_to(p, c, index, value, DEFAULT_RAMP_MS)
 
 

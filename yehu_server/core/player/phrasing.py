@@ -4,20 +4,13 @@ Vibrato and slides only as far as `/playing/phrasing` says, and where nothing el
 docs/playing.md has the rules.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.slots import SIDE, SPEED
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.physics.elementary import pseudorandom
-from yehu_server.core.player.parameter_indices import (
-    LEFT_HAND,
-    NOTE_LENGTH,
-    PHRASING,
-    VARIATION,
-)
+from yehu_server.core.player.parameter_indices import PLAYING
 
 # A sum of this many uniform numbers is nearly normal.
 SUMMED_UNIFORMS = 12
@@ -39,7 +32,7 @@ def begin_sequence(p: Any, seed: int) -> None:
 @compiled_exactly
 def vary_next_note(p: Any) -> None:
     """Draw the deviates of a new note."""
-    varied = p.value[VARIATION] * VARIED_FRACTION
+    varied = p.value[PLAYING.variation] * VARIED_FRACTION
     p.speed_variation = 1.0 + varied * deviate(p)
     p.pressure_variation = 1.0 + varied * deviate(p)
     p.detuned = deviate(p)
@@ -48,7 +41,7 @@ def vary_next_note(p: Any) -> None:
 @compiled_exactly
 def chance(p: Any, number: int) -> float:
     """A random number of the player's seed, -1 to 1; without variation no seed changes it."""
-    seed = p.seed if p.value[VARIATION] > 0.0 else 0
+    seed = p.seed if p.value[PLAYING.variation] > 0.0 else 0
     return pseudorandom((seed << 32) + number)
 
 
@@ -65,15 +58,15 @@ def deviate(p: Any) -> float:
 @compiled_exactly
 def varied_semitones(p: Any) -> float:
     """Deviation of the sounding note from its pitch."""
-    return float(p.value[VARIATION] * p.detuned * VARIED_CENTS / 100.0)
+    return float(p.value[PLAYING.variation] * p.detuned * VARIED_CENTS / 100.0)
 
 
 @compiled_exactly
 def varied_landing(p: Any, landing_ms: float) -> float:
     """The time (ms) in which a finger lands, from the usual one."""
-    if p.value[VARIATION] == 0.0:
+    if p.value[PLAYING.variation] == 0.0:
         return landing_ms
-    factor = 1.0 + p.value[VARIATION] * VARIED_LANDING * deviate(p)
+    factor = 1.0 + p.value[PLAYING.variation] * VARIED_LANDING * deviate(p)
     return float(landing_ms * min(max(factor, 1.0 / MAX_LANDING), MAX_LANDING))
 
 
@@ -112,7 +105,7 @@ def hurried(p: Any, factor: float) -> float:
 @compiled_exactly
 def fingered(p: Any) -> float:
     """How far the left hand phrases, 0 to 1."""
-    return float(p.value[PHRASING] * p.value[LEFT_HAND])
+    return float(p.value[PLAYING.phrasing] * p.value[PLAYING.left_hand])
 
 
 # Scoops: how far below its pitch a note begins (cents) at USUAL_PHRASING, and how long it takes to
@@ -129,13 +122,13 @@ def scoop_of(p: Any, c: Any, rise: float) -> float:
     Where the length of the note is not known, it is taken to be as long as the one before.
     """
     amount = min(fingered(p) / USUAL_PHRASING, 1.5)
-    length_s = p.value[NOTE_LENGTH]
+    length_s = p.value[PLAYING.note_length]
     if length_s == 0.0:
         length_s = p.contours.pace_s
     if amount == 0.0 or length_s < SCOOPED_S:
         return 0.0
     limit = RISEN_SCOOP if rise > RISE else OTHER_SCOOP
-    if c.value[SPEED] == 0.0:
+    if c.value[SLOTS.bow_speed] == 0.0:
         limit = RESTED_SCOOP
     if deviate(p) < limit:
         return 0.0
@@ -151,7 +144,7 @@ def slide_of_leap_ms(p: Any, c: Any, leap: float) -> float:
     beat (``scores.slides``).
     """
     amount = fingered(p)
-    if amount == 0.0 or c.value[SIDE] == 0.0 or p.value[NOTE_LENGTH] > 0.0:
+    if amount == 0.0 or c.value[SLOTS.bow_side] == 0.0 or p.value[PLAYING.note_length] > 0.0:
         return STEP_MS
     is_wide = MIN_LEAP < abs(leap) < MAX_LEAP
     is_long = c.frame - p.note_began > LONG_S * p.rate

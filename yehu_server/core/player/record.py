@@ -1,7 +1,5 @@
 """The player's state: requested values, held keys, hands, ear, and calibration."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Annotated, Any
 
@@ -21,20 +19,13 @@ from yehu_server.core.player.ear import EAR, prepare_ear, reset_ear
 from yehu_server.core.player.fingering import OPEN, OpenStrings
 from yehu_server.core.player.gestures import GESTURE, RESTING
 from yehu_server.core.player.note_range import NoteRange
-from yehu_server.core.player.note_tables import (
-    GAINS,
-    PITCHES,
-    SPEEDS,
-    NoteTables,
-    wave_speed,
-)
+from yehu_server.core.player.note_tables import GAINS, PITCHES, SPEEDS, NoteTables, wave_speed
 from yehu_server.core.player.parameter_indices import (
-    BOW_SIDE,
-    BOW_SPEED,
+    BOW,
     FINGER_COUNT,
     FINGER_PRESS,
     PARAMETER_COUNT,
-    PLUCK_FORCE,
+    PLUCK,
     SLOT_OF,
 )
 from yehu_server.core.player.stroke_contours import CONTOURS
@@ -154,27 +145,11 @@ def prepare_player(
     seed: int = 0,
     player_number: int = 0,
 ) -> Any:
-    """Prepare the record of a player who holds nothing.
+    """A PLAYER [shape=(1,)] who holds nothing, on an instrument as tuned, at a rate (Hz).
 
-    Parameters
-    ----------
-    quantities : Quantities
-        The instrument as tuned.
-    rate : float, Hz
-    values : mapping
-        The value of every parameter, by address.
-    calibration : NoteTables, optional
-        By default fingers stop where an ideal string is in tune, and no note is evened out.
-    bowing : ndarray
-        By default `default_bowing_table`.
-    seed : int
-        Of the variation between notes.
-    player_number : int
-        Which of a section it is; each but the first has a vibrato of their own.
-
-    Returns
-    -------
-    ndarray [shape=(1,), dtype=PLAYER]
+    `values` are of every parameter, by address. Without a calibration fingers stop where an ideal
+    string is in tune, and no note is evened out. `seed`: of the variation between notes.
+    `player_number`: which of a section; each but the first has a vibrato of their own.
     """
     player = np.zeros(1, PLAYER)
     p = player[0]
@@ -215,12 +190,7 @@ def prepare_player(
 
 
 def end_all(player: Any, controls: Any) -> None:
-    """End all notes without a release: bow and fingers leave the strings, in place.
-
-    Parameters
-    ----------
-    player, controls : records of dtype PLAYER and CONTROLS
-    """
+    """End all notes of a PLAYER without a release: bow and fingers leave the strings at once."""
     player["held"], player["sounding"], player["is_direct"] = 0, SILENT, 0
     player["side"], player["pressing"] = 0.0, 0.0
     player["string"], player["position"] = -1, OPEN
@@ -230,5 +200,5 @@ def end_all(player: Any, controls: Any) -> None:
     player["gesture"] = RESTING
     player["drift_state"], player["contours"] = np.zeros((), DRIFT_STATE), np.zeros((), CONTOURS)
     player["sway"] = np.zeros((), SWAY_STATE)
-    for index in (BOW_SPEED, BOW_SIDE, PLUCK_FORCE, *FINGER_PRESS):
+    for index in (BOW.speed, BOW.side, PLUCK.force, *FINGER_PRESS):
         controls["target"][SLOT_OF[index]] = 0.0

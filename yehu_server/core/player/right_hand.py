@@ -1,53 +1,22 @@
 """The right hand: draws the bow, or plucks, as a finger of the left hand may. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.slots import SIDE
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.physics.elementary import exp2, log2
-from yehu_server.core.player.bowing import (
-    AT_FIRM,
-    AT_FLAUTANDO,
-    AT_LIGHT,
-    BOWING_SIZE,
-    DISTANCE_FACTOR,
-    TOP_SPEED,
-    bow_pressure_for,
-    bowing_value,
-)
+from yehu_server.core.player import bowing, gestures
 from yehu_server.core.player.fingering import OPEN
-from yehu_server.core.player.gestures import (
-    PLUCKED_AT,
-    PLUCKED_BY,
-    SHAPES,
-    attack_ms,
-    tremolo_depth_of,
-    tremolo_of,
-)
 from yehu_server.core.player.harmonics import HARMONIC_BOW_POSITION, NONE
 from yehu_server.core.player.intonation import in_tables
 from yehu_server.core.player.ownership import DEFAULT_RAMP_MS, invalidate_sent, move_parameter
 from yehu_server.core.player.parameter_indices import (
-    BOW_POSITION,
-    BOW_PRESSURE,
-    BOW_SIDE,
-    BOW_SPEED,
-    BOW_TREMOLO,
-    BOW_TREMOLO_DEPTH,
-    DYNAMICS,
+    BOW,
     FINGER_COUNT,
     FINGER_PRESS,
-    INTENSITY,
-    PHRASING,
-    PLUCK_FORCE,
-    PLUCK_POSITION,
-    POSITION,
-    PRESSURE,
-    RELEASE,
-    SPEED,
+    PLAYING,
+    PLUCK,
 )
 from yehu_server.core.player.phrasing import HURRIED_WEIGHT, INNER, USUAL_PHRASING, hurried
 from yehu_server.core.player.velocity import (
@@ -88,8 +57,8 @@ DEFAULT_PLUCK_POSITION = find("/pluck/position").default
 @compiled_exactly
 def requested_dynamics(p: Any) -> float:
     """The dynamics that are asked for, with the intensity: 1 at the defaults."""
-    octaves = INTENSITY_OCTAVES * (p.value[INTENSITY] - DEFAULT_INTENSITY)
-    return float(p.value[DYNAMICS] * exp2(octaves))
+    octaves = INTENSITY_OCTAVES * (p.value[PLAYING.intensity] - DEFAULT_INTENSITY)
+    return float(p.value[PLAYING.dynamics] * exp2(octaves))
 
 
 @compiled_exactly
@@ -97,7 +66,11 @@ def requested_speed(p: Any) -> float:
     """The bow speed that is asked for (m/s)."""
     fraction = MIN_SPEED_FRACTION + (1.0 - MIN_SPEED_FRACTION) * requested_dynamics(p)
     return float(
-        p.value[SPEED] * fraction * struck_speed(p) * p.speed_variation * p.stroke_speed_factor
+        p.value[PLAYING.speed]
+        * fraction
+        * struck_speed(p)
+        * p.speed_variation
+        * p.stroke_speed_factor
     )
 
 
@@ -107,10 +80,10 @@ def arm(p: Any, exponent: float) -> float:
 
     As far as phrasing says; 1 at the defaults of dynamics, intensity and velocity.
     """
-    if p.value[PHRASING] == 0.0:
+    if p.value[PLAYING.phrasing] == 0.0:
         return 1.0
     louder = requested_dynamics(p) * struck_speed(p)
-    exponent *= p.value[PHRASING] / USUAL_PHRASING * (INNER if p.string == 0 else 1.0)
+    exponent *= p.value[PLAYING.phrasing] / USUAL_PHRASING * (INNER if p.string == 0 else 1.0)
     power = exponent * log2(max(louder, MIN_DYNAMICS))
     return float(min(max(exp2(power), 1.0 / MAX_ARM), MAX_ARM))
 
@@ -120,7 +93,7 @@ def bowing_of(p: Any, pitch: float, column: int) -> float:
     """One value of how a pitch is bowed on the string of the fingering; see `bowing_value`."""
     string = max(p.string, 0)
     stopped = in_tables(p, string, pitch)
-    return bowing_value(p.bowing_table, string, requested_position(p), stopped, column)
+    return bowing.bowing_value(p.bowing_table, string, requested_position(p), stopped, column)
 
 
 @compiled_exactly
@@ -128,19 +101,19 @@ def requested_position(p: Any) -> float:
     """The bow position that is asked for, as a fraction of the sounding length."""
     if p.gesture.node != NONE:
         return float(HARMONIC_BOW_POSITION)
-    return float(p.value[POSITION] * arm(p, ARM_PLACE))
+    return float(p.value[PLAYING.bow_position] * arm(p, ARM_PLACE))
 
 
 @compiled_exactly
 def speed_at(p: Any, pitch: float) -> float:
     """Bow speed (m/s) for a pitch: as requested and moved, up to the highest at which it speaks."""
-    return float(min(requested_speed(p) * p.gesture.speed, bowing_of(p, pitch, TOP_SPEED)))
+    return float(min(requested_speed(p) * p.gesture.speed, bowing_of(p, pitch, bowing.TOP_SPEED)))
 
 
 @compiled_exactly
 def has_same_bowing(p: Any, pitch: float) -> bool:
     """Whether a pitch is bowed as the present one is."""
-    for column in range(BOWING_SIZE):
+    for column in range(bowing.BOWING_SIZE):
         if bowing_of(p, pitch, column) != p.bowing[column]:
             return False
     return True
@@ -150,20 +123,27 @@ def has_same_bowing(p: Any, pitch: float) -> bool:
 def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
     """Set bow pressure and position, as requested and adapted to the sounding pitch, if any."""
     pressure = (
-        p.value[PRESSURE] * p.pressure_variation * p.gesture.weight * hurried(p, HURRIED_WEIGHT)
+        p.value[PLAYING.pressure]
+        * p.pressure_variation
+        * p.gesture.weight
+        * hurried(p, HURRIED_WEIGHT)
     )
     pressure *= arm(p, ARM_FORCE)
     if is_sounding:
-        for column in range(BOWING_SIZE):
+        for column in range(bowing.BOWING_SIZE):
             p.bowing[column] = bowing_of(p, pitch, column)
         m = p.bowing
-        pressure = bow_pressure_for(
-            m[AT_FLAUTANDO], m[AT_LIGHT], m[AT_FIRM], pressure, max(p.string, 0)
+        pressure = bowing.bow_pressure_for(
+            m[bowing.AT_FLAUTANDO],
+            m[bowing.AT_LIGHT],
+            m[bowing.AT_FIRM],
+            pressure,
+            max(p.string, 0),
         )
         pressure *= p.pressure_factor
-    move_parameter(p, c, BOW_PRESSURE, pressure, DEFAULT_RAMP_MS)
-    place = requested_position(p) * p.bowing[DISTANCE_FACTOR] * p.nearer
-    move_parameter(p, c, BOW_POSITION, place, DEFAULT_RAMP_MS)
+    move_parameter(p, c, BOW.pressure, pressure, DEFAULT_RAMP_MS)
+    place = requested_position(p) * p.bowing[bowing.DISTANCE_FACTOR] * p.nearer
+    move_parameter(p, c, BOW.position, place, DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -172,14 +152,14 @@ def set_attack_pressure(p: Any, c: Any) -> None:
 
     This applies to new strokes, and to slurred notes on the string that was at rest.
     """
-    usual = p.sent[BOW_PRESSURE]
+    usual = p.sent[BOW.pressure]
     begins, ms = attack_pressure_factor(p) * usual, ATTACK_PRESSURE_MS
     if p.string == 0:
         lighter = max(INNER_ATTACK_FRACTION * usual, MIN_INNER_ATTACK)
         begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), INNER_ATTACK_MS
     if begins != usual:
-        move_parameter(p, c, BOW_PRESSURE, begins, 0.0)
-        move_parameter(p, c, BOW_PRESSURE, usual, ms)
+        move_parameter(p, c, BOW.pressure, begins, 0.0)
+        move_parameter(p, c, BOW.pressure, usual, ms)
 
 
 @compiled_exactly
@@ -189,27 +169,27 @@ def draw(p: Any, c: Any, pitch: float, side: float, ramp_ms: float) -> None:
     A lifted bow attacks in ``/playing/attack`` instead. Below MIN_DYNAMICS the bow is
     lifted.
     """
-    if p.value[DYNAMICS] < MIN_DYNAMICS:
+    if p.value[PLAYING.dynamics] < MIN_DYNAMICS:
         if p.side != 0.0:
-            lift(p, c, p.value[RELEASE])
+            lift(p, c, p.value[PLAYING.release])
         return
     if p.side == 0.0:
-        ramp_ms = attack_ms(p)
-    is_on_string = c.value[SIDE] * side < 0.0 or p.side != 0.0
+        ramp_ms = gestures.attack_ms(p)
+    is_on_string = c.value[SLOTS.bow_side] * side < 0.0 or p.side != 0.0
     crossing_ms = min(CROSSING_PART * ramp_ms, CROSSING_MS) if is_on_string else ramp_ms / 4.0
     p.side = side
-    move_parameter(p, c, BOW_SIDE, side, crossing_ms)
-    move_parameter(p, c, BOW_TREMOLO, tremolo_of(p), DEFAULT_RAMP_MS)
-    move_parameter(p, c, BOW_TREMOLO_DEPTH, tremolo_depth_of(p), DEFAULT_RAMP_MS)
-    move_parameter(p, c, BOW_SPEED, p.direction * speed_at(p, pitch), ramp_ms)
+    move_parameter(p, c, BOW.side, side, crossing_ms)
+    move_parameter(p, c, BOW.tremolo, gestures.tremolo_of(p), DEFAULT_RAMP_MS)
+    move_parameter(p, c, BOW.tremolo_depth, gestures.tremolo_depth_of(p), DEFAULT_RAMP_MS)
+    move_parameter(p, c, BOW.speed, p.direction * speed_at(p, pitch), ramp_ms)
 
 
 @compiled_exactly
 def lift(p: Any, c: Any, release_ms: float) -> None:
     """End the stroke in a time (ms)."""
     p.side = 0.0
-    move_parameter(p, c, BOW_SPEED, 0.0, release_ms)
-    move_parameter(p, c, BOW_SIDE, 0.0, release_ms)
+    move_parameter(p, c, BOW.speed, 0.0, release_ms)
+    move_parameter(p, c, BOW.side, 0.0, release_ms)
 
 
 @compiled_exactly
@@ -219,21 +199,21 @@ def pluck(p: Any, c: Any, side: float) -> None:
         lift(p, c, LIFT_BEFORE_PLUCK_MS)
     if p.position == OPEN:
         clear_string(p, c)
-    at = SHAPES[p.gesture.row, PLUCKED_AT]
+    at = gestures.SHAPES[p.gesture.row, gestures.PLUCKED_AT]
     if at > 0.0:
-        move_parameter(p, c, PLUCK_POSITION, at, 0.0)
-    elif not math.isnan(p.sent[PLUCK_POSITION]):  # after one that was plucked elsewhere
-        move_parameter(p, c, PLUCK_POSITION, DEFAULT_PLUCK_POSITION, 0.0)
+        move_parameter(p, c, PLUCK.position, at, 0.0)
+    elif not math.isnan(p.sent[PLUCK.position]):  # after one that was plucked elsewhere
+        move_parameter(p, c, PLUCK.position, DEFAULT_PLUCK_POSITION, 0.0)
     force = (
         PLUCK_FORCE_N
-        * p.value[PRESSURE]
+        * p.value[PLAYING.pressure]
         * p.pressure_variation
         * requested_dynamics(p)
-        * SHAPES[p.gesture.row, PLUCKED_BY]
+        * gestures.SHAPES[p.gesture.row, gestures.PLUCKED_BY]
         / MEDIUM_PRESSURE
     )
-    move_parameter(p, c, PLUCK_FORCE, side * min(force, MAX_PLUCK_FORCE_N), DEFAULT_RAMP_MS)
-    invalidate_sent(p, PLUCK_FORCE)  # the next one may be as hard
+    move_parameter(p, c, PLUCK.force, side * min(force, MAX_PLUCK_FORCE_N), DEFAULT_RAMP_MS)
+    invalidate_sent(p, PLUCK.force)  # the next one may be as hard
 
 
 @compiled_exactly

@@ -10,8 +10,6 @@ the arch of a new stroke, as the bow turns. All of it scales with `/playing/phra
 `/engine/seed` says which.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -19,7 +17,7 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.record import FORCE_DRIFT, POSITION_DRIFT, SPEED_DRIFT
-from yehu_server.core.controls.slots import SPEED as BOW_SPEED_SLOT
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.physics.elementary import exp2, log2
 from yehu_server.core.player.bowing import (
     AT_FIRM,
@@ -35,17 +33,7 @@ from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.gestures import BOW_COUNT, FINGER_COUNT, IS_PLUCKED, SHAPES, tremolo_of
 from yehu_server.core.player.harmonics import NONE
 from yehu_server.core.player.ownership import move_parameter
-from yehu_server.core.player.parameter_indices import (
-    BODY_BRILLIANCE,
-    BOW_PRESSURE,
-    BRILLIANCE,
-    NOTE_LENGTH,
-    PHRASING,
-    PIZZICATO,
-    PRESSURE,
-    SLOT_OF,
-    VELOCITY,
-)
+from yehu_server.core.player.parameter_indices import BODY, BOW, PLAYING, SLOT_OF
 from yehu_server.core.player.phrasing import INNER, USUAL_PHRASING, chance
 from yehu_server.core.player.velocity import NEUTRAL_VELOCITY
 from yehu_server.params.spec import TURNED_ON
@@ -113,10 +101,7 @@ CONTOURS = np.dtype(
 
 @compiled_exactly
 def next_chance(p: Any, drawn: Any, start: int) -> float:
-    """The next random number, -1 to 1, of those that a record has drawn.
-
-    `start`: where its own begin among the seed's.
-    """
+    """The next random number, -1 to 1, of those that a record has drawn from `start` on."""
     drawn.random_count += 1
     return chance(p, start + drawn.random_count)
 
@@ -139,9 +124,9 @@ def contour_deviate(p: Any) -> float:
 def has_contours(p: Any) -> bool:
     """Whether the sounding note is an ordinary stroke, whatever its finger does."""
     row = p.gesture.row
-    is_plucked = p.value[PIZZICATO] >= TURNED_ON or SHAPES[row, IS_PLUCKED] != 0.0
+    is_plucked = p.value[PLAYING.pizzicato] >= TURNED_ON or SHAPES[row, IS_PLUCKED] != 0.0
     is_free = BOW_COUNT[row] == 0 and not is_plucked and tremolo_of(p) == 0.0
-    return bool(p.value[PHRASING] > 0.0 and is_free and p.gesture.node == NONE)
+    return bool(p.value[PLAYING.phrasing] > 0.0 and is_free and p.gesture.node == NONE)
 
 
 @compiled_exactly
@@ -157,18 +142,18 @@ def begin_contours(p: Any, c: Any, is_slur: bool) -> None:
             go(k.wander[i], 0.0, 0.0, FADING_S)
         return
     k.is_on = 1
-    amount = p.value[PHRASING] / USUAL_PHRASING
+    amount = p.value[PLAYING.phrasing] / USUAL_PHRASING
     if FINGER_COUNT[p.gesture.row] > 0:
         amount *= BEATING
-    k.length_s = p.value[NOTE_LENGTH]
+    k.length_s = p.value[PLAYING.note_length]
     lasts = k.length_s if k.length_s > 0.0 else max(since, 2.0 * SMALL_S)
     whole = min(max((lasts - SMALL_S) / (WHOLE_S - SMALL_S), 0.0), 1.0)
     k.wandering = amount * whole
     k.amount = amount * whole * min(max(1.0 + UNEVEN * contour_deviate(p), SMALLEST), LARGEST)
     if is_slur:
         k.amount *= 0.5
-    at_rest = c.value[BOW_SPEED_SLOT] == 0.0
-    harder = HARDER_PEAK * (p.value[VELOCITY] - NEUTRAL_VELOCITY)
+    at_rest = c.value[SLOTS.bow_speed] == 0.0
+    harder = HARDER_PEAK * (p.value[PLAYING.velocity] - NEUTRAL_VELOCITY)
     place = DOWN_PEAK if p.direction > 0.0 else UP_PEAK
     place += UNEVEN_PEAK * contour_deviate(p) - harder
     for i in range(QUANTITIES):
@@ -232,7 +217,7 @@ def advance_contours(p: Any, c: Any) -> None:
     k = p.contours
     for i in range(QUANTITIES):
         k.before[i] = k.value[i]
-    if k.is_on == 0 or (p.sounding < 0 and c.value[BOW_SPEED_SLOT] == 0.0):
+    if k.is_on == 0 or (p.sounding < 0 and c.value[SLOTS.bow_speed] == 0.0):
         k.is_on = 0
         k.value[:], k.bright_db = 0.0, 0.0
         k.gain *= GAIN_DECAY if abs(k.gain) > 1e-6 else 0.0
@@ -263,25 +248,25 @@ def advance_contours(p: Any, c: Any) -> None:
     k.gain = exp2(LOUDER * faster) - 1.0
     harder = HARDER * (faster + log2(1.0 + k.value[FORCE_DRIFT]))
     brighter = SHELF_DB * (harder - NEARER * log2(1.0 + k.value[POSITION_DRIFT]))
-    brighten(p, c, p.value[BRILLIANCE] * min(max(brighter, -MAX_SHELF_DB), MAX_SHELF_DB))
+    brighten(p, c, p.value[PLAYING.brilliance] * min(max(brighter, -MAX_SHELF_DB), MAX_SHELF_DB))
 
 
 @compiled_exactly
 def brighten(p: Any, c: Any, more_db: float) -> None:
     """Let the shelf follow the bow, by small steps, unless it moves for another reason."""
     k = p.contours
-    if abs(more_db - k.bright_db) < FINE_DB or c.remaining[SLOT_OF[BODY_BRILLIANCE]] > 0:
+    if abs(more_db - k.bright_db) < FINE_DB or c.remaining[SLOT_OF[BODY.brilliance]] > 0:
         return
-    usual = p.sent[BODY_BRILLIANCE] - k.bright_db
+    usual = p.sent[BODY.brilliance] - k.bright_db
     k.bright_db = more_db
     if not math.isnan(usual):  # as it is where somebody else moves it, or nobody did
-        move_parameter(p, c, BODY_BRILLIANCE, usual + more_db, 0.0)
+        move_parameter(p, c, BODY.brilliance, usual + more_db, 0.0)
 
 
 @compiled_exactly
 def within_speed(p: Any, c: Any, more: float) -> float:
     """A factor less 1 on the bow's speed, up to the highest at which the note speaks."""
-    speed = abs(c.target[BOW_SPEED_SLOT])
+    speed = abs(c.target[SLOTS.bow_speed])
     most = p.bowing[TOP_SPEED] / speed - 1.0 if speed > 0.0 else more
     most = min(max(most, 0.0), MAX_SPEED)
     return float(max(min(more, most), MIN_SPEED - 1.0))
@@ -293,10 +278,10 @@ def within_force(p: Any, more: float) -> float:
 
     Little where the bow is to be light or to scratch.
     """
-    pressure = p.sent[BOW_PRESSURE]
+    pressure = p.sent[BOW.pressure]
     if not pressure > 0.0:  # NaN where somebody else moves it
         return 0.0
-    if p.value[PRESSURE] <= FLAUTANDO or p.value[PRESSURE] >= SCRATCHY:
+    if p.value[PLAYING.pressure] <= FLAUTANDO or p.value[PLAYING.pressure] >= SCRATCHY:
         more *= LIGHT
     light = min(p.bowing[AT_FLAUTANDO], p.bowing[AT_LIGHT])
     least = max(min(light / pressure - 1.0, 0.0), -MAX_FORCE)

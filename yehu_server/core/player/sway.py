@@ -6,17 +6,15 @@ side in a down-bow and back in an up-bow; a slurred note goes back, too. `/body/
 sounds the player stays. What the angles do to the sound: ``physics.lobes``.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.slots import SWAY
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.physics.elementary import tanh
 from yehu_server.core.physics.lobes import DIRECTIONS
-from yehu_server.core.player.parameter_indices import NOTE_LENGTH, VARIATION
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.stroke_contours import (
     CONTOURS_FROM,
     SEGMENT,
@@ -53,7 +51,7 @@ SWAY_STATE = np.dtype(
 def swing(p: Any, is_slur: bool) -> None:
     """Begin to swing with a note."""
     s = p.sway
-    known_s = p.value[NOTE_LENGTH]
+    known_s = p.value[PLAYING.note_length]
     size = min(known_s / WHOLE_S, 1.0) if known_s > 0.0 else 1.0
     s.side = -BACK * s.side if is_slur else p.direction
     lasts = known_s if known_s > 0.0 else OPEN_S
@@ -66,7 +64,11 @@ def swing(p: Any, is_slur: bool) -> None:
 def advance_sway(p: Any, c: Any) -> None:
     """Let the controls turn the body to where the player sways in one hop."""
     s, hop_s = p.sway, p.ear.hop / p.rate
-    amount = c.value[SWAY] / USUAL_SWAY * min(p.value[VARIATION] / USUAL_VARIATION, 1.0)
+    amount = (
+        c.value[SLOTS.body_sway]
+        / USUAL_SWAY
+        * min(p.value[PLAYING.variation] / USUAL_VARIATION, 1.0)
+    )
     is_moving = p.sounding >= 0
     if is_moving:
         s.time_s += hop_s

@@ -4,8 +4,6 @@ What is corrected is the sharpening: how much sharper the string sounds than the
 learnt for each string, pitch, place and speed of the bow, as long as the program runs.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -13,7 +11,7 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player.ear import PITCH_CERTAINTY, learning_bin, learnt_cents
 from yehu_server.core.player.intonation import position_of
 from yehu_server.core.player.ownership import move_parameter
-from yehu_server.core.player.parameter_indices import FINGER_POSITION, LISTENING, PHRASING, PRESS
+from yehu_server.core.player.parameter_indices import FINGER_POSITION, PLAYING
 from yehu_server.core.player.right_hand import requested_speed
 
 # Parts of an error that are corrected in a second: of a small error (cents), of a large one. Some
@@ -36,7 +34,7 @@ MIN_SLIPS, MAX_SLIPS = 0.5, 1.6  # in a period, of a string that sounds its note
 def begin_tuning(p: Any, pitch: float) -> None:
     """Begin a note with what was learnt of it."""
     p.sharper = learnt_cents(p, p.string, pitch)
-    p.first_error, p.first_press = math.nan, p.value[PRESS]
+    p.first_error, p.first_press = math.nan, p.value[PLAYING.press]
     p.jumps, p.side_heard, p.times_heard = 0, 0, 0
 
 
@@ -49,7 +47,7 @@ def tune(p: Any, c: Any, pitch: float) -> None:
     finger = FINGER_POSITION[p.finger]
     if p.taken[finger] != 0 or p.is_held[finger] != 0:
         return
-    if p.value[PRESS] != p.first_press:  # a finger that presses harder is to be heard
+    if p.value[PLAYING.press] != p.first_press:  # a finger that presses harder is to be heard
         return
     row, position_bin, speed_bin = learning_bin(p, p.string, pitch)
     if math.isnan(p.first_error):
@@ -62,7 +60,7 @@ def tune(p: Any, c: Any, pitch: float) -> None:
     if math.isinf(p.first_error):
         return
     uncorrected = ear.error + p.sharper
-    wanted = p.value[LISTENING] * uncorrected - p.sharper
+    wanted = p.value[PLAYING.listening] * uncorrected - p.sharper
     if jumps(p, wanted) >= MAX_JUMPS:
         p.first_error = math.inf
         return
@@ -83,7 +81,7 @@ def jumps(p: Any, wanted: float) -> int:
 
     Between two such places the finger would go to and fro for ever.
     """
-    if abs(wanted) > (FAR_CENTS if p.value[PHRASING] == 0.0 else MOVED_CENTS):
+    if abs(wanted) > (FAR_CENTS if p.value[PLAYING.phrasing] == 0.0 else MOVED_CENTS):
         side = 1 if wanted > 0.0 else -1
         if side == p.side_heard:
             p.times_heard += 1

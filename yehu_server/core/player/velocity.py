@@ -6,18 +6,16 @@ velocity to /playing/pressure (mappings/keyboard.toml). With that, the level ris
 from 1 to 127 (scripts/playability.py velocity).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.controls.slots import SIDE
+from yehu_server.core.controls.slots import SLOTS
 from yehu_server.core.player.brilliance import set_brilliance
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.fingering import OPEN
 from yehu_server.core.player.intonation import balance_db
 from yehu_server.core.player.ownership import move_parameter
-from yehu_server.core.player.parameter_indices import EVENNESS, OUTPUT_BALANCE, VELOCITY
+from yehu_server.core.player.parameter_indices import BODY, OUTPUT, PLAYING
 from yehu_server.params.table import find
 
 # A gain that rises slowly does not amplify the end of a loud note before; with the bow off the
@@ -37,14 +35,14 @@ def set_loudness_balance(p: Any, c: Any, pitch: float, speed: float, effort: flo
         sounding_pitch = p.open_note[string]
     set_brilliance(p, c, string, sounding_pitch, effort)
     balance = balance_db(p, string, sounding_pitch, speed) - p.louder_by
-    balance *= p.value[EVENNESS]
+    balance *= p.value[BODY.evenness]
     balance += 0.0 if p.is_direct != 0 else struck_db(p) + p.gesture.gain_db
-    is_off = c.value[SIDE] == 0.0 and p.is_direct == 0
+    is_off = c.value[SLOTS.bow_side] == 0.0 and p.is_direct == 0
     ramp_ms = RISING_MS if balance > p.balance and not is_off else FALLING_MS
     if p.gesture.gain_db != p.gesture.gain_to and has_risen(p, c):  # it goes on in small steps
         ramp_ms = 1e3 * HOP_S
     p.balance = balance
-    move_parameter(p, c, OUTPUT_BALANCE, balance, ramp_ms)
+    move_parameter(p, c, OUTPUT.balance, balance, ramp_ms)
 
 
 @compiled_exactly
@@ -65,7 +63,7 @@ HARD_ATTACK_PRESSURE, ATTACK_PRESSURE_MS = 1.3, 60.0
 @compiled_exactly
 def between(p: Any, softest: float, neutral: float, hardest: float) -> float:
     """A value at the velocity of the note, from those at 0, NEUTRAL_VELOCITY and 1."""
-    velocity = p.value[VELOCITY]
+    velocity = p.value[PLAYING.velocity]
     if velocity < NEUTRAL_VELOCITY:
         return float(
             neutral + (softest - neutral) * (NEUTRAL_VELOCITY - velocity) / NEUTRAL_VELOCITY

@@ -5,8 +5,6 @@ note's middle, where the body would swing its level (``vibrato_table``). Default
 rows of ``params.table``.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -18,20 +16,7 @@ from yehu_server.core.player.gestures import CENTS, DELAY_MS, HAS_VIBRATO, HERTZ
 from yehu_server.core.player.gestures import PRESS as PRESS_SHARE
 from yehu_server.core.player.gestures import UPWARD as UPWARD_SHARE
 from yehu_server.core.player.ownership import DEFAULT_RAMP_MS, invalidate_sent, move_parameter
-from yehu_server.core.player.parameter_indices import (
-    BEND,
-    NOTE_LENGTH,
-    PLAYING_VIBRATO_DELAY,
-    PLAYING_VIBRATO_PRESS,
-    PLAYING_VIBRATO_RATE,
-    VARIATION,
-    VIBRATO,
-    VIBRATO_DEPTH,
-    VIBRATO_ONSET,
-    VIBRATO_PRESS,
-    VIBRATO_RATE,
-    VIBRATO_UPWARD,
-)
+from yehu_server.core.player.parameter_indices import PLAYING, VIBRATO
 from yehu_server.core.player.phrasing import chance, fingered
 from yehu_server.core.player.vibrato_table import CENTRE, DEFAULT_DEPTH_CENTS, DEPTH_SHARE, STEPS
 
@@ -59,12 +44,12 @@ def set_vibrato(p: Any, c: Any) -> None:
         at = vibrato_row(p)
         cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, DEFAULT_DEPTH_CENTS))
         upward = p.vibrato_table[at, CENTRE]
-    hertz = row[HERTZ] if own else p.value[PLAYING_VIBRATO_RATE]
-    press = row[PRESS_SHARE] if own else p.value[PLAYING_VIBRATO_PRESS]
-    move_parameter(p, c, VIBRATO_DEPTH, cents * other_factor(p, 1, OTHER_DEPTH), DEFAULT_RAMP_MS)
-    move_parameter(p, c, VIBRATO_PRESS, press, DEFAULT_RAMP_MS)
-    move_parameter(p, c, VIBRATO_UPWARD, upward, DEFAULT_RAMP_MS)
-    move_parameter(p, c, VIBRATO_RATE, hertz * other_factor(p, 0, OTHER_RATE), DEFAULT_RAMP_MS)
+    hertz = row[HERTZ] if own else p.value[PLAYING.vibrato_rate]
+    press = row[PRESS_SHARE] if own else p.value[PLAYING.vibrato_press]
+    move_parameter(p, c, VIBRATO.depth, cents * other_factor(p, 1, OTHER_DEPTH), DEFAULT_RAMP_MS)
+    move_parameter(p, c, VIBRATO.press, press, DEFAULT_RAMP_MS)
+    move_parameter(p, c, VIBRATO.upward, upward, DEFAULT_RAMP_MS)
+    move_parameter(p, c, VIBRATO.rate, hertz * other_factor(p, 0, OTHER_RATE), DEFAULT_RAMP_MS)
 
 
 @compiled_exactly
@@ -72,18 +57,18 @@ def begin_vibrato(p: Any, c: Any) -> None:
     """Fade in the vibrato of a new note; players of a section begin at other phases of it."""
     delay_ms = VIBRATOS[p.gesture.row, DELAY_MS] if has_vibrato(p) else requested_delay_ms(p)
     delay_ms *= other_factor(p, 2, OTHER_DELAY)
-    if p.player_number != 0 and p.value[VARIATION] > 0.0 and delay_ms > 0.0:
+    if p.player_number != 0 and p.value[PLAYING.variation] > 0.0 and delay_ms > 0.0:
         c.vibrato = phase_of(p, c)
-    move_parameter(p, c, VIBRATO_ONSET, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
+    move_parameter(p, c, VIBRATO.onset, 0.0 if delay_ms > 0.0 else 1.0, 0.0)
     if delay_ms > 0.0:
-        move_parameter(p, c, VIBRATO_ONSET, 1.0, delay_ms)
+        move_parameter(p, c, VIBRATO.onset, 1.0, delay_ms)
 
 
 @compiled_exactly
 def end_vibrato(p: Any, c: Any) -> None:
     """Let the vibrato fade with the last note, or the finger would rock the string on for ever."""
-    move_parameter(p, c, VIBRATO_ONSET, 0.0, FADING_MS)
-    invalidate_sent(p, VIBRATO_ONSET)  # the next note may begin while it fades
+    move_parameter(p, c, VIBRATO.onset, 0.0, FADING_MS)
+    invalidate_sent(p, VIBRATO.onset)  # the next note may begin while it fades
 
 
 @compiled_exactly
@@ -99,10 +84,10 @@ def is_sure(p: Any, c: Any, last: int) -> bool:
     Where its length is not known it does unless it comes soon after the frame `last`, at which the
     one before began.
     """
-    if p.value[NOTE_LENGTH] <= 0.0:
+    if p.value[PLAYING.note_length] <= 0.0:
         is_slow = p.began < 0 or c.frame - last >= SLOW_FROM_S * p.rate
         return bool(is_slow and is_requested(p))
-    is_long = p.value[NOTE_LENGTH] >= AUDIBLE_FROM_S
+    is_long = p.value[PLAYING.note_length] >= AUDIBLE_FROM_S
     return bool(is_long and (is_requested(p) or (fingered(p) > 0.0 and not has_vibrato(p))))
 
 
@@ -111,14 +96,14 @@ def is_requested(p: Any) -> bool:
     """Whether a parameter, an aftertouch or the articulation asks for a vibrato."""
     if has_vibrato(p):
         return bool(VIBRATOS[p.gesture.row, CENTS] > 0.0)
-    return bool(p.value[VIBRATO] > 0.0 or p.value[PLAYING_VIBRATO_PRESS] >= LEAST_PRESS)
+    return bool(p.value[PLAYING.vibrato] > 0.0 or p.value[PLAYING.vibrato_press] >= LEAST_PRESS)
 
 
 @compiled_exactly
 def requested_cents(p: Any) -> float:
     """Depth of the vibrato: as requested, else the player's own."""
-    if p.value[VIBRATO] > 0.0:
-        return float(p.value[VIBRATO])
+    if p.value[PLAYING.vibrato] > 0.0:
+        return float(p.value[PLAYING.vibrato])
     above = vibrated_pitch(p) - p.open_note[max(p.string, 0)]
     near = min(max(above / WHOLE_FROM, 0.0), 1.0)
     return float(fingered(p) * OWN_CENTS * (AT_NUT + (1.0 - AT_NUT) * near))
@@ -127,9 +112,9 @@ def requested_cents(p: Any) -> float:
 @compiled_exactly
 def requested_delay_ms(p: Any) -> float:
     """Time in which the vibrato of a new note comes: as requested; the player's own comes late."""
-    if p.value[VIBRATO] > 0.0 or fingered(p) == 0.0:
-        return float(p.value[PLAYING_VIBRATO_DELAY])
-    return float(max(p.value[PLAYING_VIBRATO_DELAY], OWN_DELAY_MS))
+    if p.value[PLAYING.vibrato] > 0.0 or fingered(p) == 0.0:
+        return float(p.value[PLAYING.vibrato_delay])
+    return float(max(p.value[PLAYING.vibrato_delay], OWN_DELAY_MS))
 
 
 @compiled_exactly
@@ -137,7 +122,7 @@ def vibrated_pitch(p: Any) -> float:
     """The pitch (fractional MIDI note) that the vibrato is about, also before a slide is there."""
     if p.sounding < 0:
         return float(p.finger_pitch)
-    return float(p.held_pitch[p.sounding] + p.value[BEND])
+    return float(p.held_pitch[p.sounding] + p.value[PLAYING.bend])
 
 
 @compiled_exactly
@@ -149,19 +134,14 @@ def vibrato_row(p: Any) -> int:
 
 @compiled_exactly
 def other_factor(p: Any, number: int, varied: float) -> float:
-    """A factor that each player of a section has for good; 1 for the first of them, or one alone.
+    """A factor that each player of a section has for good; 1 for the first, or one alone.
 
-    Parameters
-    ----------
-    number : int
-        Of what it is a factor on: each has another one.
-    varied : float
-        Its standard deviation at full variation.
+    `number`: of what it is a factor on; `varied`: its standard deviation at full variation.
     """
     if p.player_number == 0:
         return 1.0
     differs = math.sqrt(3.0) * pseudorandom((p.player_number << 32) + number)
-    return float(max(1.0 + p.value[VARIATION] * varied * differs, MIN_OTHER))
+    return float(max(1.0 + p.value[PLAYING.variation] * varied * differs, MIN_OTHER))
 
 
 @compiled_exactly

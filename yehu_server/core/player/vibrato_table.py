@@ -4,8 +4,6 @@ A body may radiate several decibels more at a pitch than some cents beside it. A
 a pitch is narrower, and its middle a little off, to the side where the body is more even.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

@@ -1,4 +1,1 @@
-"""The stage, compiled: where players sit, the room about them, and the mix of all to two channels.
-
-It knows signals, metres and seconds: no note, no player, no file.
-"""
+"""The stage: where players sit, the room, and the mix of all to two channels. Compiled."""

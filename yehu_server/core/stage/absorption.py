@@ -6,8 +6,6 @@ at low frequencies to b at high ones. Each filter is a first-order shelf whose d
 proportion to the time that sound was on its way [Jot].
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -32,22 +30,8 @@ def loss_high(decay: float, damping: float) -> float:
 
 
 @compiled_exactly
-def decay_at(frequency: float, decay: float, damping: float) -> float:
-    """Decay time (s) at a frequency (Hz): what is asked of a room."""
-    share = frequency * frequency / (frequency * frequency + CROSSOVER_HZ * CROSSOVER_HZ)
-    low, high = loss_low(decay), loss_high(decay, damping)
-    return DECAYED_DB / (low + (high - low) * share)
-
-
-@compiled_exactly
 def set_shelf(shelf: Any, line: int, time: float, decay: float, damping: float) -> None:
-    """Set the filter of sound that was on its way for a time (s).
-
-    Parameters
-    ----------
-    shelf : record with ``rate`` and the coefficients ``b_0``, ``b_1``, ``a_1``
-        Of several filters; that of `line` is written.
-    """
+    """Write filter `line` of a shelf record, of sound that was on its way for a time (s)."""
     low = exp10(-loss_low(decay) * time / 20.0)
     more_db = (loss_high(decay, damping) - loss_low(decay)) * time
     step = exp10(-more_db / 40.0)  # square root of the shelf's height

@@ -3,8 +3,6 @@
 Each function works on rows: what one line gives in each of the frames that are computed at once.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,8 +7,6 @@ the frequency, and two high-pass filters. So both sides differ in colour, and th
 measured.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -43,13 +41,7 @@ SIDES = np.dtype(
 
 
 def prepare_sides(sides: Any, rate: float, body: int = 0) -> None:
-    """Prepare a record of dtype SIDES [shape=()] for a rate (Hz), in place.
-
-    Parameters
-    ----------
-    body : int
-        Which of many bodies; each has frequencies of its own.
-    """
+    """Prepare a record of SIDES at a rate (Hz), with the frequencies of one of many bodies."""
     spread = SPREAD * np.random.default_rng(body).uniform(-1.0, 1.0, SECTIONS) * (body > 0)
     for k, hertz in enumerate(TURNS_HZ * (1.0 + spread)):
         angle = 2.0 * math.pi * min(hertz / rate, 0.45)
@@ -70,10 +62,7 @@ def clear_sides(sides: Any) -> None:
 
 @compiled_exactly
 def side_signal(s: Any, x: float) -> float:
-    """What the left hears more of a sample than straight ahead, and the right less.
-
-    Real time: safe.
-    """
+    """What the left hears more than straight ahead, and the right less. Real time: safe."""
     for k in range(PASSES):
         passed = s.pass_b * (x - s.before[k]) + s.pass_a * s.passed[k]
         s.before[k], s.passed[k] = x, passed

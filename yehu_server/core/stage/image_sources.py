@@ -5,8 +5,6 @@ listener to the one behind the players, z from the floor up. Sound of an image i
 reflects once: it comes from where a mirror would show the player ([Allen]).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -57,10 +55,7 @@ def reflection(size: float, decay: float) -> float:
 
 @compiled_exactly
 def diffuse_level(size: float, decay: float) -> float:
-    """Amplitude of the reverberant field, over that of the direct sound [Kuttruff].
-
-    The direct sound is that at REFERENCE_DISTANCE_M.
-    """
+    """Amplitude of the reverberant field over direct sound at REFERENCE_DISTANCE_M [Kuttruff]."""
     absorbing = SABINE * volume(size) / decay
     return math.sqrt(16.0 * math.pi * REFERENCE_DISTANCE_M * REFERENCE_DISTANCE_M / absorbing)
 
@@ -77,19 +72,9 @@ def find_images(
 ) -> None:
     """Find when and how loud each ear hears the images of a player, beside the direct sound.
 
-    Parameters
-    ----------
-    size : float, m
-        Length of the room.
-    distance : float, m
-        From listener to player; a player stays within the room.
-    pan : float
-        -1 left to 1 right.
-    decay : float, s
-    delays : ndarray [shape=(EARS, WALLS), s]
-        Written: how much later than the direct sound each image is heard.
-    gains : ndarray [shape=(EARS, WALLS)]
-        Written: amplitudes; the direct sound at REFERENCE_DISTANCE_M has 1.
+    Of a room's length (m) and decay (s), a player's distance within it (m), and pan, -1 left to 1
+    right. Writes delays (s) and amplitudes [shape=(EARS, WALLS)]: later than the direct sound,
+    which at REFERENCE_DISTANCE_M has 1.
     """
     width, height = WIDTH_RATIO * size, HEIGHT_RATIO * size
     at_x, at_y = LISTENER_X * width, LISTENER_Y * size

@@ -7,8 +7,6 @@ line after a time of its own, which makes the echoes dense early and, unlike all
 row, leaves no ringing of its own.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -217,15 +215,9 @@ def next_prime(number: int) -> int:
 def reverberate(r: Any, frame: int, level: Array, sound: Array, heard: Array) -> None:
     """Let sound of two sides enter the room; write what the room gives, and how far it is open.
 
-    While the level is 0 nothing is computed, and the room is empty when it is heard again.
-    Real time: safe.
-
-    Parameters
-    ----------
-    frame : int
-        Number of the first of the frames, of which there are at most CHUNK.
-    level : ndarray [shape=(frames,)]
-    sound, heard : ndarray [shape=(frames, 2)]
+    While the level is 0 nothing is computed, and the room is empty when it is heard again. Of at
+    most CHUNK frames from `frame` on: `level` [shape=(frames,)], `sound` and `heard`
+    [shape=(frames, 2)]. Real time: safe.
     """
     frames, done = level.shape[0], 0
     while done < frames:

@@ -1,7 +1,5 @@
 """The record of the stage: the room, the buses of the mix, its level, and the tape."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where one player sits: the direct sound at both ears, and the first reflections. Compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -54,13 +52,7 @@ SEAT = np.dtype(
 
 
 def prepare_seat(seat: Any, rate: float, body: int = 0) -> None:
-    """Prepare a record of dtype SEAT [shape=()] for a rate (Hz), in place.
-
-    Parameters
-    ----------
-    body : int
-        Which of many bodies sounds there: see ``directivity``.
-    """
+    """Prepare a SEAT record in place, at a rate (Hz), for one of many bodies (``directivity``)."""
     seat["rate"] = rate
     seat["crossfade_step"] = 1.0 / (CROSSFADE_S * rate)
     prepare_sides(seat["sides"], rate, body)
@@ -143,10 +135,7 @@ def update_silence(s: Any, x: float) -> bool:
 
 @compiled_exactly
 def reflect(s: Any, frame: int, x: float) -> None:
-    """Keep a sample, and compute what both ears hear of earlier ones (``early``).
-
-    Real time: safe.
-    """
+    """Keep a sample; compute what both ears hear of earlier ones (``early``). Real time: safe."""
     if s.mute < 0:
         s.mute += 1
         if s.mute == 0:

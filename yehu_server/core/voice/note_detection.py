@@ -5,8 +5,6 @@ Its pitch slides with the voice; a leap is another note, slurred; a level that f
 is a new stroke.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -18,7 +16,7 @@ from yehu_server.core.physics.elementary import elementwise, exp, log, log10
 from yehu_server.core.player.commands import BEGIN, END, SLIDE, WRITE
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.notes import DYNAMICS_EXPONENT
-from yehu_server.core.player.parameter_indices import DYNAMICS, STRING
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.right_hand import MIN_SPEED_FRACTION
 from yehu_server.core.voice.pitch_detection import HOP_S, PITCH_DETECTOR, prepare_pitch_detector
 
@@ -243,7 +241,7 @@ def choose_string(f: Any) -> None:
     string = INNER if f.played < (f.on_outer if f.string == INNER else f.on_inner) else EITHER
     if string != f.string:
         f.string = string
-        send(f, WRITE, STRING, string, 0.0)
+        send(f, WRITE, PLAYING.string, string, 0.0)
 
 
 @compiled_exactly
@@ -283,7 +281,7 @@ def set_dynamics(f: Any, h: Any) -> None:
     if not abs(level - f.dynamics_db) < MIN_LEVEL_STEP_DB:
         f.dynamics_db = level
         step = min(int(-STEPS_PER_DB * level), len(BY_LEVEL) - 1)
-        send(f, WRITE, DYNAMICS, BY_LEVEL[step], 0.0)
+        send(f, WRITE, PLAYING.dynamics, BY_LEVEL[step], 0.0)
 
 
 @compiled_exactly

@@ -5,8 +5,6 @@ The sound is decimated to about 12 kHz. Its normalised square difference with it
 that is nearly as high as the highest is the period, and peaks at its multiples refine it.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

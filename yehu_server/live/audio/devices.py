@@ -1,7 +1,5 @@
 """List audio outputs and inputs, and choose one by name."""
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import ctypes.util

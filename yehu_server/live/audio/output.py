@@ -5,8 +5,6 @@ the same frame within some hundredths of a second, and a new process searches fo
 until it is back.
 """
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import queue
@@ -104,10 +102,8 @@ class Output:
     """Plays an ensemble on a device, which it searches for from its construction on.
 
     Call `find`, make the ensemble with that rate in ``memory``, then call `begin`, and at last
-    `end`.
-
-    `changed`: called with a line when the device plays, disappears, or is back; from another
-    thread.
+    `end`. `changed` is called, from another thread, with a line when the device plays, disappears,
+    or is back.
     """
 
     def __init__(self, options: OutputOptions, changed: Callable[[str], None]) -> None:

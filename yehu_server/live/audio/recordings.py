@@ -1,7 +1,5 @@
 """Recordings of live sound, in stereo: the one of the command, and those that clients request."""
 
-from __future__ import annotations
-
 import os
 import threading
 import time
@@ -29,13 +27,9 @@ ROOM_S = 1.0  # a recording begins only if so much fits on the disk
 class Recorder:
     """A recording in a thread of its own, to a file that is valid at every moment.
 
-    Raises OutputError where the file cannot be written, or is there.
-
-    `start`: the first frame to record.
-    `on_message`: called with a line when the recording ends by itself, such as on a full disk, or
-    when frames are missing.
-    `overwrite`: whether to replace an older file.
-    `waits`: whether the recording begins with the first sound, a moment before it.
+    Raises OutputError where the file cannot be written, or is there and not to `overwrite`. It
+    begins with frame `start` or, if it `waits`, a moment before the first sound. `on_message`:
+    called with a line when it ends by itself, as on a full disk, or when frames are missing.
     """
 
     def __init__(

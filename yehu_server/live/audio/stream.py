@@ -6,8 +6,6 @@ process, or the silent clock, continues where this one stopped. An output comput
 input follows a voice, and posts events to them.
 """
 
-from __future__ import annotations
-
 import itertools
 import os
 import queue
@@ -67,10 +65,7 @@ class Stream:
 
     @property
     def latency_ms(self) -> float:
-        """Latency between callback and device, as PortAudio reports it; 0 where it does not know.
-
-        Over PipeWire's JACK it makes a day of a negative number of frames.
-        """
+        """Latency between callback and device by PortAudio; 0 where it does not know."""
         reported_s = float(self._stream.latency)
         return 1e3 * reported_s if 0.0 <= reported_s < MAX_LATENCY_S else 0.0
 

@@ -1,7 +1,5 @@
 """Play by a voice at an audio input, which is followed as it sings (``core.voice``)."""
 
-from __future__ import annotations
-
 import math
 import threading
 from collections.abc import Callable
@@ -42,10 +40,7 @@ def tuned_as(playing: PlayingOptions) -> dict[str, Any]:
 
 
 class VoiceInput(Supervisor):
-    """Keeps the process that holds an audio input, and plays the first part by it.
-
-    `on_message`: called with a line when the input is found or lost; from another thread.
-    """
+    """Plays the first part by an audio input, in a process; reports its loss to `on_message`."""
 
     def __init__(
         self,

@@ -1,7 +1,5 @@
 """MIDI by ALSA's sequencer, of which alsa-midi has wheels where RtMidi has none."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 

@@ -4,8 +4,6 @@ So they pass no other Python than that of the process that holds the inputs, how
 server is. It loads no compiled code; the rings are those of ``engine.mailbox``.
 """
 
-from __future__ import annotations
-
 import struct
 import threading
 from collections.abc import Mapping, Sequence
@@ -35,10 +33,7 @@ class SharedRing:
         self._order = threading.Lock()
 
     def post(self, time_ns: int, kind: int, index: int) -> bool:
-        """Add an event with the time at which it arrived; return whether there was room.
-
-        It is dropped and counted where there was none.
-        """
+        """Add an event with its time of arrival; without room it is dropped, and counted."""
         posted = self._posted.value
         if posted - self._drained.value >= self._size:
             self._dropped.value += 1
@@ -83,10 +78,7 @@ class MidiFeed:
         self._posting = threading.Lock()
 
     def open(self, name: str) -> int | None:
-        """Count an input as open; return its number, or None if too many are.
-
-        With no number left, it gets that of an input that is gone.
-        """
+        """Count an input as open; return its number, if need be one that is gone left, or None."""
         with self._posting:
             if name not in self._numbers:
                 free = set(range(PORTS)) - {*self._numbers.values()}

@@ -5,8 +5,6 @@ where the audio callback takes it (``feed``). When a JACK server dies, this proc
 one takes its place.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import threading
@@ -32,10 +30,7 @@ ACTIVE_SENSING, CLOCKS = 0xFE, {0xF8, 0xF9}
 
 
 class Input:
-    """An open MIDI input.
-
-    `is_forwarded`: whether each message is sent to the parent, too.
-    """
+    """An open MIDI input; if `is_forwarded`, each message is sent to the parent, too."""
 
     def __init__(self, name: str, full_name: str | None, feed: MidiFeed, parent: Parent) -> None:
         self.name = name

@@ -3,8 +3,6 @@
 When the server ends, this process does: nothing that JACK's library does after that is safe.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Play from MIDI inputs as they are connected; report those that come and go."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import threading
@@ -34,13 +32,9 @@ class MidiOptions:
 class MidiPorts(Supervisor):
     """Keeps the process that holds the MIDI inputs, and plays all parts from them.
 
-    Its messages reach the audio callback by shared memory; the server receives them only where
-    something is to be learned.
-
-    `memory`: the memory that has the instruments.
-    `rigs`: the first instrument of each part.
-    `on_message`: called with a line when a port or the MIDI system appears or disappears; from
-    another thread.
+    Its messages reach the audio callback by shared `memory`; the server receives them only where
+    something is to be learned. `rigs`: the first instrument of each part. `on_message`: called,
+    from another thread, with a line when a port or the MIDI system appears or disappears.
     """
 
     def __init__(

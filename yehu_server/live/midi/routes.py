@@ -1,7 +1,5 @@
 """Which MIDI input plays which part, by names that stay the same when it is plugged in again."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -91,10 +89,7 @@ class Route:
 
 
 def route_of(part: int, text: str) -> Route:
-    """Read ``PORT[:CHANNEL]``, words of an input's name and a MIDI channel from 1.
-
-    Raises ParameterError where the channel is none, or there is nothing.
-    """
+    """Read ``PORT[:CHANNEL]``, words of a name and a channel from 1; raises ParameterError."""
     found = _CHANNEL.fullmatch(text)
     words, channel = (found[1], int(found[2][:4]) - 1) if found else (text, None)
     if channel is not None and not 0 <= channel < CHANNELS:

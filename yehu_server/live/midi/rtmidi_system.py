@@ -1,7 +1,5 @@
 """MIDI by RtMidi, of ALSA, CoreMIDI and Windows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

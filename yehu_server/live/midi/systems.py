@@ -5,8 +5,6 @@ crashes when the server dies. RtMidi has the others where it has wheels (python-
 Python 3.12); beyond that alsa-midi has ALSA's.
 """
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 import sys
@@ -54,10 +52,7 @@ def check_api(api: str | None) -> None:
 
 
 def library(api: str) -> tuple[str, str]:
-    """The module of this package that has a MIDI system, and the library that it needs.
-
-    Raises DeviceError, with how to get one, where none is installed.
-    """
+    """A MIDI system's module, and the library it needs; DeviceError says how to get one."""
     if api == "jack":
         choices = {"jack_system": ("jack", "JACK-Client")}
     else:

@@ -4,8 +4,6 @@
 the method that carries it out; docs/osc.md describes them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -54,10 +52,7 @@ def _carry_out(row: Call, carrier: GroupCalls, request: Request) -> None:
 
 
 def preset_calls(names: tuple[str, ...], group: str = FIRST) -> list[Call]:
-    """The calls of a group that take a preset, with the names there are.
-
-    Addresses include the prefix.
-    """
+    """The calls of a group that take a preset, with the names there are."""
 
     def with_names(argument: Argument) -> Argument:
         return replace(argument, choices=names) if argument in PRESETS else argument
@@ -74,10 +69,7 @@ def preset_calls(names: tuple[str, ...], group: str = FIRST) -> list[Call]:
 
 
 def own_calls(mapping: Mapping, group: str = FIRST, below: str = "") -> list[Call]:
-    """The OSC addresses of the user's own that a mapping of a group binds, as calls.
-
-    `below` is put before the addresses.
-    """
+    """The user's own OSC addresses that a mapping of a group binds, `below` another, as calls."""
     return [
         Call(
             below + bind.source,
@@ -94,8 +86,6 @@ def owners(mappings: Iterable[Mapping]) -> dict[str, int]:
     """The part, from 0, that each of the user's own addresses moves where it is sent without one.
 
     That is the part that its bind names, else the first whose mapping binds it.
-
-    `mappings`: those of all parts.
     """
     found: dict[str, int] = {}
     for part, mapping in enumerate(mappings):

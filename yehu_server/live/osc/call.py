@@ -1,7 +1,5 @@
 """What an OSC call is, and a request for one: a received message with its arguments, checked."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

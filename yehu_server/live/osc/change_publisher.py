@@ -4,8 +4,6 @@ Values are read once a round, topic by topic, and then sent. What a subscriber a
 round waits for the next one, so that it is sent the values of then.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -99,10 +97,7 @@ STATUS_S = 0.25  # between readings of the status
 
 
 class ChangePublisher:
-    """What subscribers were sent last, and the rounds that send them more.
-
-    `values`, `status`, `prefix`: see ``clients.Clients``.
-    """
+    """What subscribers were sent last, and the rounds that send more; see ``clients.Clients``."""
 
     def __init__(self, values: Values, status: Status, prefix: str) -> None:
         self._values = values

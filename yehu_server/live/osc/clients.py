@@ -3,8 +3,6 @@
 All is sent from the listening port, each message by itself: Pure Data does not read bundles.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Sequence
 
@@ -111,10 +109,7 @@ class Clients:
             self._is_waiting = True
 
     def mute(self, peer: Peer, seconds: float) -> None:
-        """Do not answer a peer for some time: another server that sends us its own values.
-
-        Two servers that answer each other would go on for ever.
-        """
+        """Do not answer a peer for some time: two servers would answer each other for ever."""
         self._client(peer).muted_until = time.monotonic() + seconds
 
     def subscribe(
@@ -175,10 +170,7 @@ class Clients:
         self._named.pop(peer, None)
 
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
-        """Send a peer an error, unless it has been sent many of late.
-
-        A callable `reason` is called only where the error is sent.
-        """
+        """Send a peer an error, unless it was sent many; `reason` may be called for it."""
         client = self._client(peer)
         now = time.monotonic()
         if client.muted_until > now:

@@ -1,7 +1,5 @@
 """An OSC client for commands that change or show a running server."""
 
-from __future__ import annotations
-
 import contextlib
 import socket
 import time
@@ -66,11 +64,7 @@ class OscClient:
             until = time.monotonic() + within_s
 
     def answer(self, address: str, within_s: float = ANSWERS_WITHIN_S) -> Message:
-        """The next message at an address (without the prefix).
-
-        Raises DeviceError where none comes within `within_s`; RefusedError where the server answers
-        with an error.
-        """
+        """The next message at an address, without the prefix; raises DeviceError, RefusedError."""
         for message in self.answers(within_s):
             if message.address == address:
                 return message

@@ -1,7 +1,5 @@
 """What OSC calls share: players, clients, and what they need of the server."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field

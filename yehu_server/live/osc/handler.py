@@ -3,8 +3,6 @@
 The protocol is described in docs/osc.md.
 """
 
-from __future__ import annotations
-
 import logging
 import time
 from collections.abc import Iterator
@@ -36,10 +34,7 @@ MAX_FAR = 64  # hosts that are told of, each once
 
 
 class OscHandler:
-    """Carries out the messages of packets; called by the thread of ``receiving.OscPorts`` only.
-
-    `addresses`: those of all parameters and calls.
-    """
+    """Carries out packets at `addresses` of parameters and calls, in ``receiving.OscPorts``."""
 
     def __init__(self, context: CallContext) -> None:
         self.context = context
@@ -113,9 +108,7 @@ class OscHandler:
         if ahead_s > FAR_S and peer.host not in self._far and len(self._far) < MAX_FAR:
             self._far.add(peer.host)
             log.warning(
-                "OSC: time tags of %s are %.0f s ahead: is its clock right?",
-                peer.host,
-                ahead_s,
+                "OSC: time tags of %s are %.0f s ahead: is its clock right?", peer.host, ahead_s
             )
         packet = answer(message.address, message.payload)  # smaller than the message unpacked
         if not self._schedule.add(message.due_s or 0.0, packet, peer):

@@ -1,7 +1,5 @@
 """The OSC calls of MIDI learn, and the one that lists what controllers move."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -24,10 +22,7 @@ NOT_MOVED = -1.0
 
 
 class LearnCalls(GroupCalls):
-    """Carries out ``/learn``, ``/unlearn`` and ``/bindings``.
-
-    What is learned is learned by the mapping: all parts that use it have it.
-    """
+    """Carries out ``/learn``, ``/unlearn``, ``/bindings``, for all parts that use the mapping."""
 
     @osc_call(
         "/learn",

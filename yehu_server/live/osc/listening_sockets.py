@@ -1,7 +1,5 @@
 """Open the sockets for OSC, and find out who uses an address."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import socket

@@ -5,23 +5,14 @@ address that a piece of the pattern can reach are followed at once, so that no p
 than its length times the address's: a regular expression may take for ever.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from functools import cache, lru_cache
 
 from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean, near_address
+from yehu_server.live import part_addresses
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.status import PART_STATUS, STATUS, STATUS_PREFIX
-from yehu_server.live.part_addresses import (
-    FIRST,
-    PART_PARAMS,
-    check_own,
-    check_part,
-    group_of,
-    split_group,
-)
 from yehu_server.params.table import PREFIX, TABLE, UNIT, find
 
 SPECIAL = frozenset("*?[{")
@@ -97,12 +88,12 @@ PART_NAMES = [row.name for row in PART_STATUS]
 @cache
 def readable(parts: int) -> dict[str, None]:
     """The addresses of all values, of parameters and then of the status, in order."""
-    groups = (FIRST, *map(group_of, range(parts)))
+    groups = (part_addresses.FIRST, *map(part_addresses.group_of, range(parts)))
     values = (
         group + param.address + form
         for group in groups
         for form in ("", UNIT)
-        for param in (PART_PARAMS if group else TABLE)
+        for param in (part_addresses.PART_PARAMS if group else TABLE)
     )
     status = (
         group + STATUS_PREFIX + name
@@ -125,24 +116,21 @@ def parameter_of(address: str) -> str:
 
 
 def near(address: str, parts: int, known: Iterable[str]) -> str:
-    """The reason for an unknown address, with a similar one if there is one.
-
-    `known`: the addresses of all parameters and calls, without the prefix.
-    """
+    """The reason for an unknown address, with a similar one of those known, if there is one."""
     if not address.startswith(PREFIX + "/"):
         hint = near_address(
             PREFIX + address[: limits.PATTERN], [PREFIX + one for one in known], 0.8
         )
         return f"unknown address (all but learned ones begin with {PREFIX}/){hint}"
-    group, own = split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
+    group, own = part_addresses.split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
     try:
-        check_part(group, parts)
-        check_own(group, own)
+        part_addresses.check_part(group, parts)
+        part_addresses.check_own(group, own)
         if own.startswith(STATUS_PREFIX):
             parameter_of(own)
     except YehuError as error:
         return str(error)
-    of_group = [PREFIX + one for one in known if split_group(one)[0] == group]
+    of_group = [PREFIX + one for one in known if part_addresses.split_group(one)[0] == group]
     return f"unknown address{near_address(address, of_group, 0.75, prefix=PREFIX + group)}"
 
 

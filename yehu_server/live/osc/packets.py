@@ -4,8 +4,6 @@ python-osc does neither here. It accepts damaged packets, and never ends with so
 which subscribers are sent hundreds at a time, takes it seven times as long.
 """
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field

@@ -115,10 +115,7 @@ def _decoded(frame: bytes) -> bytes:
 
 
 class Peer(ABC):
-    """A sender of OSC, which can be answered.
-
-    `host`: the IP address of its host.
-    """
+    """A sender of OSC, which can be answered, and the IP address of its `host`."""
 
     host: str
 

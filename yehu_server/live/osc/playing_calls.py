@@ -1,7 +1,5 @@
 """The OSC calls that play a part: parameters, notes, values and subscriptions."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from yehu_server.errors import RefusedError

@@ -1,7 +1,5 @@
 """The OSC calls that load, save, delete and list presets, and morph between two."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial

@@ -6,8 +6,6 @@ last packets are handled, so that its sender waits. On Linux the kernel stamps p
 and counts those it drops: a message has its true time however busy Python is.
 """
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import selectors
@@ -21,14 +19,7 @@ from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Address, Allowed, is_here
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.listening_sockets import open_both
-from yehu_server.live.osc.peers import (
-    FramingError,
-    Peer,
-    TcpPeer,
-    Traffic,
-    UdpPeer,
-    answer_bucket,
-)
+from yehu_server.live.osc.peers import FramingError, Peer, TcpPeer, Traffic, UdpPeer, answer_bucket
 from yehu_server.live.osc.work_queue import Calls, WorkQueue
 from yehu_server.system import clocks
 from yehu_server.system.sockets import prepare, receive

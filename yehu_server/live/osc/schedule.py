@@ -6,8 +6,6 @@ intervals are exact to the frame. Once the device's own rate has led more than a
 from that, a new pair of time and frame is taken.
 """
 
-from __future__ import annotations
-
 import heapq
 import itertools
 import time

@@ -4,8 +4,6 @@ There are SENDER_QUEUES (``core.engine.mailbox``). Each sender has one of them t
 there are enough; the last is of all others together.
 """
 
-from __future__ import annotations
-
 from collections import OrderedDict
 from collections.abc import Sequence
 
@@ -18,10 +16,7 @@ OF_OTHERS = SENDER_QUEUES
 
 
 class SenderQueues:
-    """The queues of senders, from 1; called from one thread.
-
-    `instruments`: the first of each part.
-    """
+    """The queues of senders, from 1, by the first instruments of parts; of one thread."""
 
     def __init__(self, instruments: Sequence[Instrument]) -> None:
         self._instruments = instruments

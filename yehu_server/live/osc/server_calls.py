@@ -1,7 +1,5 @@
 """The OSC calls that no part has of its own: any value, recordings, subscriptions, ping."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from yehu_server.live.osc.call import ADDRESS, NAME, Request, osc_call

@@ -4,8 +4,6 @@ A sender's own work is done in order; senders take turns, each for a slice of ti
 sends little is served within a few slices, however much others have waiting.
 """
 
-from __future__ import annotations
-
 import contextlib
 import socket
 from collections import OrderedDict, deque
@@ -51,10 +49,7 @@ class Shares:
 
 
 class WorkQueue:
-    """The work of all senders that waits to be done.
-
-    A piece of work is an iterator, whose steps are short.
-    """
+    """The work of all senders that waits to be done: iterators, whose steps are short."""
 
     def __init__(self, most_bytes: int = limits.WAITING) -> None:
         self._shares = Shares(most_bytes)
@@ -67,10 +62,7 @@ class WorkQueue:
     def add(
         self, steps: Iterator[None], peer: Peer, size: int = 0, *, always: bool = False
     ) -> bool:
-        """Add work of a size in bytes; return whether there was room.
-
-        With `always` there is: for a sender that waits by itself.
-        """
+        """Add work of a size in bytes; return whether there was room, or it goes `always`."""
         size += limits.OVERHEAD
         if not self._shares.take(peer, size, always=always):
             return False

@@ -1,7 +1,5 @@
 """The example scores as events, and what a page's performances begin with."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Sequence
@@ -69,10 +67,7 @@ def _place(found: dict[str, Any]) -> tuple[bool, int, str]:
 
 
 def example(file: Path) -> dict[str, Any]:
-    """An example: its mapping, its length, where do is, and its events: [seconds, bytes].
-
-    Of several players the first plays: a page has one instrument.
-    """
+    """The first player's part: its mapping, length, where do is, and events: [seconds, bytes]."""
     mapping = MAPPING.get(file.stem, DEFAULT)
     score = read_any(file, ReadOptions(is_mpe=mapping == MPE))
     events = score.events if mapping == MPE else _of_first_player(score.events)

@@ -1,7 +1,5 @@
 """The constants and tables that the page needs, generated from those of the server."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import fields

@@ -1,7 +1,5 @@
 """Guests of the page: what those on other machines may do, and the PIN that lets them in."""
 
-from __future__ import annotations
-
 import hmac
 import secrets
 import time
@@ -38,10 +36,7 @@ class Guests:
 
 
 class Admission:
-    """Gives each who connects a role.
-
-    `guests`: without them, all own the server.
-    """
+    """Gives each who connects a role; without `guests`, all own the server."""
 
     def __init__(self, guests: Guests | None) -> None:
         self._guests = guests

@@ -3,8 +3,6 @@
 The process of its own has the lowest priority: it must not disturb whoever plays meanwhile.
 """
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

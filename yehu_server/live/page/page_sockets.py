@@ -8,8 +8,6 @@ the socket of sound: then it is one frame number, and float32 samples from there
 in turn. A page plays one part, which its address names: `/socket?part=2`; without, the first.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import struct
@@ -185,10 +183,7 @@ class PageSockets:
     # -- sending to all ----------------------------------------------------------------------
 
     def set_own_values(self, own: Sequence[Sequence[Sequence[float]]]) -> None:
-        """Take the values that parts have where their instruments have others.
-
-        `own`: of each part, indices and values of parameters.
-        """
+        """Take values, by indices, that parts have where their instruments have others."""
         self._own = {
             part: {int(index): value for index, value in of} for part, of in enumerate(own)
         }

@@ -1,7 +1,5 @@
 """Keeps the process that serves pages, which posts what they play by itself."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass

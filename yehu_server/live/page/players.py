@@ -4,8 +4,6 @@ A page reads MIDI and mappings itself, and sends what it would post. Its keys li
 its own, so that they are not mistaken for those of another page, or of MIDI.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict, deque
 from collections.abc import Sequence
 from typing import Any
@@ -50,10 +48,7 @@ Array = Any
 
 
 class PagePlayers:
-    """What pages play, by their numbers; called from one thread.
-
-    `rigs`: the first instrument of each part.
-    """
+    """What pages play, by their numbers, on each part's first instrument; of one thread."""
 
     def __init__(self, view: SharedView, rigs: Sequence[int]) -> None:
         self._view = view

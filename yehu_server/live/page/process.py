@@ -4,8 +4,6 @@ It reads the instruments in shared memory, and posts commands there itself. So n
 sound for twenty pages delay a note.
 """
 
-from __future__ import annotations
-
 import asyncio
 import os
 import threading

@@ -1,7 +1,5 @@
 """The instruments of the server, from the pages' process: it reads them, and posts commands."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
@@ -9,13 +7,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine import native
-from yehu_server.core.engine.mailbox import (
-    KIND_BITS,
-    PAGE_QUEUE,
-    PAGE_QUEUES,
-    PAGES,
-    RESERVE,
-)
+from yehu_server.core.engine.mailbox import KIND_BITS, PAGE_QUEUE, PAGE_QUEUES, PAGES, RESERVE
 from yehu_server.core.engine.rig import RIG, RIG_BYTES
 from yehu_server.core.engine.snapshot import SNAPSHOT, snapshot
 from yehu_server.core.engine.telemetry import METERS
@@ -33,10 +25,7 @@ SHARED_INDICES = [INDEX[param.address] for param in TABLE if param.is_shared]
 
 
 class SharedView:
-    """Instruments on a stage in shared memory, while another process plays them.
-
-    `handle`: of the memory.
-    """
+    """Instruments in shared memory, by its `handle`, that another process plays."""
 
     def __init__(self, handle: Handle) -> None:
         self._memory = open_shared(handle)
@@ -67,10 +56,7 @@ class SharedView:
         value: float = 0.0,
         other: float = 0.0,
     ) -> int:
-        """Post an event (``midi.events``) of a page to the part whose first instrument this is.
-
-        Returns its number among all that pages posted to the part.
-        """
+        """Post a page's event to a part, by its first instrument; return its number."""
         address = self._address + rig * RIG_BYTES
         kind += page << KIND_BITS
         native.post_from.call(address, PAGES, frame, kind, index, value, other)
@@ -122,10 +108,7 @@ class SharedView:
         return int(native.taped.call(self._address))
 
     def sound(self, begin: int, end: int) -> tuple[int, bytes]:
-        """Some frames of the mix, left and right in turn, float32.
-
-        They begin later where the tape has lost the first.
-        """
+        """Frames of the mix, left and right in turn, float32, as far as the tape has them."""
         begin = max(begin, end - TAPE + MARGIN)
         frames = self._stage["tape"][np.arange(begin, end) % TAPE]
         return begin, frames.tobytes()

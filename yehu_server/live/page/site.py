@@ -1,7 +1,5 @@
 """The page's files: written as a folder, or served, from memory or for a try."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import hashlib
@@ -222,10 +220,7 @@ class _Handler(SimpleHTTPRequestHandler):
 
 
 def server_of(folder: Path, port: int) -> ThreadingHTTPServer:
-    """A server of a folder's files on a port (0: a free one) of this machine, not yet running.
-
-    Raises OutputError where the port is taken.
-    """
+    """A server of a folder's files on a port (0: any free), not yet running; or OutputError."""
     try:
         return ThreadingHTTPServer((HOST, port), partial(_Handler, directory=str(folder)))
     except OSError as error:

@@ -1,7 +1,5 @@
 """Messages of WebSockets: no other client waits for one that does not read, or that sends much."""
 
-from __future__ import annotations
-
 import asyncio
 import struct
 from collections.abc import AsyncIterator

@@ -1,7 +1,5 @@
 """A thread with an asyncio event loop that starts again after errors."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import errno
@@ -21,10 +19,7 @@ REPORT_EVERY_S = 60.0
 
 
 class LoopThread:
-    """Runs a coroutine function in a thread, from `start` to `stop`; after an error, again.
-
-    `failed`: called with an error that ended the coroutine, once for equal ones in a row.
-    """
+    """Runs a coroutine function in a thread, again after an error; `failed` gets each once."""
 
     def __init__(
         self,

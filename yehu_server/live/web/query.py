@@ -3,8 +3,6 @@
 Source: the OSCQuery proposal (github.com/Vidvox/OSCQueryProposal), third revision.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, partial

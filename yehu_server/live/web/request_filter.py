@@ -142,10 +142,7 @@ class Connections:
 
     @contextlib.contextmanager
     def web_socket(self, request: web.Request) -> Iterator[None]:
-        """Count a connection as a WebSocket for the time of a block.
-
-        Raises HTTPServiceUnavailable where there are too many, in all or of its host.
-        """
+        """Count a WebSocket for a block; HTTPServiceUnavailable where there are too many."""
         host = plain(request.remote or "::")
         others = list(self._web_sockets.values())
         if len(others) >= limits.WEB_SOCKETS or others.count(host) >= limits.WEB_SOCKETS_A_HOST:

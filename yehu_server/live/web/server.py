@@ -3,8 +3,6 @@
 Only OSC messages in a WebSocket change anything. No path of a request is used as a file's name.
 """
 
-from __future__ import annotations
-
 import asyncio
 import ipaddress
 import json
@@ -63,10 +61,7 @@ class WebOptions:
 
 
 class WebServer:
-    """A TCP port for HTTP and WebSockets, and its thread; raises DeviceError as `listen`.
-
-    `page_port`: returns the port where the page is served, if it is.
-    """
+    """A TCP port for HTTP and WebSockets, and its thread; `page_port` is the page's, if any."""
 
     def __init__(
         self,
@@ -194,10 +189,7 @@ class WebServer:
 
 
 def listen(what: str, host: str, port: int) -> socket.socket:
-    """Listen at an address, by IPv4 and IPv6 where that is one; `what` is named in errors.
-
-    Raises DeviceError where the address is in use or not this machine's.
-    """
+    """Listen at an address, by IPv4 and IPv6 if it is one; a DeviceError names `what` cannot."""
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         dualstack = family is socket.AF_INET6 and socket.has_dualstack_ipv6()

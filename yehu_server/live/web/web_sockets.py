@@ -1,7 +1,5 @@
 """Serve WebSockets: OSC in binary frames, OSCQuery commands in text frames."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import json
@@ -83,10 +81,7 @@ class WebPeer(Peer):
             self._measure()
 
     def _measure(self) -> None:
-        """Note what the other end has not read, from time to time until it has read all.
-
-        Only the web's thread may ask the transport.
-        """
+        """Note, in the web's thread, what the other end has not read, until it has read all."""
         self._buffered = self._transport.get_write_buffer_size()
         self._measures = self._buffered > 0 and not self._transport.is_closing()
         if self._measures:

@@ -1,7 +1,5 @@
 """Read fields of ABC: metre, unit length, tempo, order of parts."""
 
-from __future__ import annotations
-
 import re
 from fractions import Fraction
 

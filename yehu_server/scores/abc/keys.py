@@ -1,7 +1,5 @@
 """Read keys of ABC, and what a key or a voice says of its clef, octave and transposition."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -47,10 +45,7 @@ def properties_of(text: str, unknown: Counter[str]) -> tuple[dict[str, int], str
 
 
 def _octaves_of(clef: str, *, bare: bool = False) -> int | None:
-    """The octaves by which a clef sounds otherwise; None where it is none.
-
-    A bare word is a clef only where it cannot be a key.
-    """
+    """The octaves by which a clef, no key, sounds otherwise; None where it is none."""
     found = CLEF.fullmatch(clef)
     if not found or found[1] not in CLEFS or (bare and found[1] in (*"PGCF", "none")):
         return None

@@ -6,8 +6,6 @@ tells. What is in no table is not understood. Fields, properties and directives 
 abcm2ps, abcjs and abc2midi add to them.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from fractions import Fraction

@@ -1,9 +1,4 @@
-"""Read ABC, the notation in letters: melodies of version 2.1 of its standard.
-
-docs/scores.md lists what is understood.
-"""
-
-from __future__ import annotations
+"""Read ABC, the notation in letters, of version 2.1 (docs/scores.md)."""
 
 import os
 import re

@@ -1,7 +1,5 @@
 """The signs of ABC's music (standard 2.1, 4), as a table of patterns in the order of trial."""
 
-from __future__ import annotations
-
 import re
 
 LENGTH = r"\d*/*\d*"

@@ -8,8 +8,6 @@ Pitches of heavy and living notes differ between players and pieces. docs/jianpu
 sources of those here.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from fractions import Fraction
@@ -69,10 +67,7 @@ def mode_named(name: str) -> Mode | None:
 
 
 def semitones_of(character: str, weight: str, mode: Mode) -> float:
-    """Semitones above do of a character of 二四谱.
-
-    `weight` is LIGHT, HEAVY or LIVING where that is written before it, else empty.
-    """
+    """Semitones above do of a character of 二四谱, its `weight` LIGHT, HEAVY, LIVING or empty."""
     if character == WU and is_living(character, weight, mode):
         return LIVING_SEMITONES
     heavy = weight in (HEAVY, LIVING) or (not weight and character in mode.heavy)

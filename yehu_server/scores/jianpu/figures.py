@@ -1,7 +1,5 @@
 """Write pitches in a key, lengths and slurs as jianpu does."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction

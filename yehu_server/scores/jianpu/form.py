@@ -1,7 +1,5 @@
 """Collect the elements of a jianpu text in bars, and unfold its repeats, endings and jumps."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Words of jianpu other than notes: marks, dynamics, texts, and ignored layout commands."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Read one word of jianpu as a note: figures, octaves, accidentals and length."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from enum import Enum, auto

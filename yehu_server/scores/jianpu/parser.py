@@ -1,7 +1,5 @@
 """Parse the words of one part to elements: notes, marks and repeats, in the order of the page."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Make the notes, spans and signs of a part from its elements, in the order of playing."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace

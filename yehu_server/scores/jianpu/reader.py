@@ -1,10 +1,4 @@
-"""Read jianpu (简谱, numbered notation) in the text format of jianpu-ly, and 二四谱.
-
-The format is that of [jianpu-ly], as docs/jianpu.md describes it. 二四谱 and 工尺谱 are read
-with it (`characters`).
-"""
-
-from __future__ import annotations
+"""Read jianpu (简谱) as [jianpu-ly] has it, 二四谱 and 工尺谱 (docs/jianpu.md)."""
 
 import os
 from collections import Counter

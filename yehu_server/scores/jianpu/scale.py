@@ -1,7 +1,5 @@
 """The pitches of figures and characters: key, mode and base octave of a jianpu text."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 
@@ -19,10 +17,7 @@ _KEY = re.compile(r"([1-7])=(?:([A-Ga-g])([#b]?)|([#b])([A-Ga-g]))")
 
 
 class Scale:
-    """The pitches of figures at a place of the text, which begins in the key of the part before.
-
-    Keys are in semitones above middle C.
-    """
+    """The pitches of figures at a place of the text; keys in semitones above middle C."""
 
     def __init__(self, characters: Mapping[str, float] | None, key: float | None = None) -> None:
         self.mode = DEFAULT_MODE  # of 二四谱

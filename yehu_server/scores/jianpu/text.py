@@ -1,7 +1,5 @@
 """Split a jianpu text into words and headers with their places, without comments and lyrics."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass

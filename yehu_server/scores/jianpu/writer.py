@@ -1,9 +1,4 @@
-"""Write a score as a jianpu text, which `reader` reads as the same score.
-
-Repeats are written out; a part has a bar a word group, and some bars a line.
-"""
-
-from __future__ import annotations
+"""Write a score, repeats unfolded, as a jianpu text that `reader` reads as the same score."""
 
 from bisect import bisect_left, bisect_right
 from collections import Counter

@@ -1,7 +1,5 @@
 """Read the bars of one part of a MusicXML file: notes, directions, bar lines."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from fractions import Fraction

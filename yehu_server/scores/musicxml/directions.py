@@ -1,7 +1,5 @@
 """Read directions of MusicXML: dynamics, hairpins, tempi, words and jumps."""
 
-from __future__ import annotations
-
 from collections import Counter
 from fractions import Fraction
 from xml.etree.ElementTree import Element

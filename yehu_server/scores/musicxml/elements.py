@@ -5,8 +5,6 @@ MusicXML does not have, wherever it stands. Marks of notes and chord symbols are
 read.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from xml.etree.ElementTree import Element
 

@@ -1,9 +1,4 @@
-"""The marks of notes in MusicXML, in the names of `notated`: read, and written the other way.
-
-docs/scores.md has the table.
-"""
-
-from __future__ import annotations
+"""MusicXML's marks of notes, by the names of `notated`: read and written (docs/scores.md)."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """Read what MuseScore exports of its own files, where its program is installed."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -40,10 +38,7 @@ def read_musescore(path: Path) -> Written:
 
 
 def export(path: Path, target: Path) -> None:
-    """Let MuseScore write a score as a file whose ending says what it is.
-
-    Raises ScoreError, without the file's name, where MuseScore is not there or does not do it.
-    """
+    """Let MuseScore write a score as a file; raises ScoreError, without the file's name."""
     program = next(filter(None, map(shutil.which, PROGRAMS)), None)
     if program is None:
         raise ScoreError(

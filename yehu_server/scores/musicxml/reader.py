@@ -6,8 +6,6 @@ make a small file endless. Nothing but the file itself is opened: neither its do
 an archive names.
 """
 
-from __future__ import annotations
-
 import codecs
 import io
 import os
@@ -103,10 +101,7 @@ def _partwise(root: Element) -> Element:
 
 
 def unpacked(data: bytes) -> bytes:
-    """Return the score in a compressed file, as its container names it.
-
-    Raises ScoreError where the archive is damaged, too large or holds no score.
-    """
+    """The score in a compressed file; raises ScoreError where it is damaged, too large or none."""
     if len(data) > MAX_BYTES:
         raise ScoreError(f"is an archive larger than {MAX_BYTES >> 20} MiB")
     if data.count(ENTRY) > MAX_ENTRIES:

@@ -4,8 +4,6 @@ MusicXML asks that the notes stand under the sign, too (`measure-repeat` and `be
 schema); some programs write rests there.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from xml.etree.ElementTree import Element

@@ -1,10 +1,4 @@
-"""Write a score as MusicXML: each part on a staff of its own, at the pitch that sounds.
-
-What it holds is what `reader` understands of it: reading the file gives the same score. Repeats
-are written out.
-"""
-
-from __future__ import annotations
+"""Write a score as MusicXML, unfolded, that `reader` reads as the same score."""
 
 import math
 from bisect import bisect_right

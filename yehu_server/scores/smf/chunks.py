@@ -4,8 +4,6 @@ An error names the kind of a file that is no MIDI file, so that its owner knows 
 Headers and tracks are found also where lengths are wrong.
 """
 
-from __future__ import annotations
-
 import re
 import struct
 from dataclasses import dataclass, field

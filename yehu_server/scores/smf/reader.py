@@ -6,8 +6,6 @@ files with nothing to play and those that ask for too much. docs/midi_files.md s
 of each fault.
 """
 
-from __future__ import annotations
-
 import os
 from bisect import bisect_right
 from collections import Counter, defaultdict

@@ -1,7 +1,5 @@
 """Decode one track of a MIDI file to messages at ticks, convert these to seconds, note damage."""
 
-from __future__ import annotations
-
 import math
 import re
 from bisect import bisect_right
@@ -200,10 +198,7 @@ OF_ALL = ("type", "time", "channel")  # what all messages have
 
 
 class MessagesOfStatus(dict[bytes, "mido.Message | None"]):
-    """The messages of a file with one status, by their data bytes; None where those are damaged.
-
-    Each is made once and never changed: making one takes longer than the rest of reading.
-    """
+    """The messages of a status by data bytes, None if damaged; each made once, as it takes long."""
 
     def __init__(self, status: int) -> None:
         super().__init__()

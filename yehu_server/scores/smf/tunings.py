@@ -6,8 +6,6 @@ of single keys and their dumps are not. [MIDI 1.0 Detailed Specification; MIDI T
 RP-020]
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

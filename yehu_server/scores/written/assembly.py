@@ -1,7 +1,5 @@
 """Make a score with its repeats unfolded of the bars of all parts as they stand on the page."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """The loudness of a written part: dynamics, hairpins and accents, as MIDI velocities."""
 
-from __future__ import annotations
-
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from fractions import Fraction
@@ -116,10 +114,7 @@ class Loudness:
         return round(min(max(loudest, SOFTEST), LOUDEST))
 
     def below_db(self, note: Note, beats: Sequence[float]) -> list[float]:
-        """The levels (dB, 0 or more) of a note below its loudest moment, at some of its beats.
-
-        One value, 0, where loudness stays the same.
-        """
+        """Levels (dB, 0 or more) of a note below its loudest moment at some beats, or one 0."""
         least, largest = self._range(note)
         if largest - least < MIN_SWELL:
             return [0.0]

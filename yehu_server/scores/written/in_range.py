@@ -1,7 +1,5 @@
 """Choose the part of a written score that plays, and move parts by octaves into range."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,9 +1,4 @@
-"""A written score as it is laid out on a page: its bars, notes cut at bar lines, names of pitches.
-
-Writers of notation begin from here. Repeats stay unfolded.
-"""
-
-from __future__ import annotations
+"""A written score as a page has it: bars, notes cut at their lines, names of pitches."""
 
 import math
 from bisect import bisect_right

@@ -1,9 +1,4 @@
-"""Translate the marks of a note for bow and fingers to values of parameters.
-
-docs/scores.md has the table. Values are by ear, where nothing else is said.
-"""
-
-from __future__ import annotations
+"""The marks of a note as values of parameters, mostly by ear (docs/scores.md)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

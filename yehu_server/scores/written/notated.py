@@ -195,10 +195,7 @@ class Span:
 
 
 class OpenSpan:
-    """A span that words such as cresc. or rit. begin, and that lasts until something ends it.
-
-    It is put into `spans` when it ends; after `longest` quarters it acts no more.
-    """
+    """A span that words begin, put into `spans` when something, or `longest` quarters, ends it."""
 
     def __init__(self, spans: list[Span], longest: Fraction | None = None) -> None:
         self._spans, self._longest = spans, longest

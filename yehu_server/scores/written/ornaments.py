@@ -1,9 +1,4 @@
-"""Play ornaments and grace notes as touches of the fingers on one bow, slides away as a bent pitch.
-
-docs/scores.md has the table. Times are by ear, for the tempo of hands and not of the music.
-"""
-
-from __future__ import annotations
+"""Ornaments as touches of the fingers on one bow, timed by ear (docs/scores.md)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The strokes of a written part: when each note begins and ends, and which notes share a bow."""
 
-from __future__ import annotations
-
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from itertools import pairwise

@@ -1,9 +1,4 @@
-"""Perform a written score: its marks become notes, bends, loudness and settings.
-
-docs/scores.md says what each mark does. Each part gets a MIDI channel of its own.
-"""
-
-from __future__ import annotations
+"""Perform a written score (docs/scores.md); each part gets a MIDI channel of its own."""
 
 import math
 from collections import Counter
@@ -98,10 +93,7 @@ def shortest_s(written: Written) -> float:
 
 
 def leading_notes(written: Written, number: int) -> list[ScoreNote]:
-    """The notes of a part, by its number from 0, as they are written: all others follow it.
-
-    One under a fermata is as long as that has it.
-    """
+    """A part's notes as written, which all follow, but as long as fermatas have them."""
     at = WrittenClock(written).seconds
     return [
         ScoreNote(-1, -1, 0, _key_of(n.pitch), 0, at(n.begins_at), at(n.ends_at), n.begins_at)

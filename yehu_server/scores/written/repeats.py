@@ -6,8 +6,6 @@ its repeat, or has one where another ending follows. Then bars are played in the
 player reads them.
 """
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Play even notes unevenly: swing of MusicXML, hornpipes of ABC."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -56,8 +54,5 @@ def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Fraction = Fracti
 
 
 def begin_of_beats(length: Fraction, before: Fraction, metre: Fraction) -> Fraction:
-    """Where the beats of a bar of a length begin, in quarters since it does itself.
-
-    An upbeat, which follows no whole bar, is counted from its end.
-    """
+    """Where a bar's beats begin, in quarters since it does; an upbeat counts from its end."""
     return length - metre if length < metre and before < metre else Fraction(0)

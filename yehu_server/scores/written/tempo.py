@@ -1,9 +1,4 @@
-"""Convert beats of a written score to seconds: tempi, changes of tempo, fermatas, caesuras.
-
-A fermata or caesura slows the beats under it, so that all parts wait together.
-"""
-
-from __future__ import annotations
+"""Convert beats to seconds: tempi, their changes, and fermatas, which hold all parts."""
 
 from bisect import bisect_right
 from collections.abc import Iterator

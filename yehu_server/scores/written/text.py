@@ -1,7 +1,5 @@
 """Show what was understood of a written score, as text and as JSON."""
 
-from __future__ import annotations
-
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
@@ -22,10 +20,7 @@ MAX_TEMPI = 20  # that the head shows
 
 
 def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
-    """The score as lines: what is at its head, then the notes of each part.
-
-    Moves of parts are those for an instrument that has the notes `within`.
-    """
+    """The score as lines: its head, then each part's notes, moved for those `within`."""
     yield written.title or "(no title)"
     yield from written.remarks
     for key in written.keys:

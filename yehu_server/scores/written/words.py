@@ -1,7 +1,5 @@
 """Interpret words over the staff, such as pizz., sul pont., rit. and Allegro."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass

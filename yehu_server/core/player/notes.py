@@ -347,19 +347,19 @@ def follow_bend(p: Any, c: Any) -> None:
 @compiled_exactly
 def rock(p: Any, c: Any) -> None:
     """Rock the finger as requested now; an open string's note is stopped on the other for it."""
-    vibrato.set_vibrato(p, c)
     is_short = 0.0 < p.value[PLAYING.note_length] < vibrato.AUDIBLE_FROM_S
     is_open = p.sounding >= 0 and p.string == 1 and p.position == OPEN
-    if not is_open or is_short or is_touched(p) or is_plucked(p) or not vibrato.is_requested(p):
-        return
-    pitch = note_pitch(p)
-    string, position = choose(p, pitch, BEATS[p.gesture.row], True, requested_speed(p))
-    if string == 0:
-        left_hand.stop(p, c, string, position, min_press(p, string), STEP_MS)
-        begin_tuning(p, pitch)
-        set_bow_pressure(p, c)
-        update_bow(p, c)
-        pause_listening(p, c, SLURRED_MS)
+    is_free = is_open and not (is_short or is_touched(p) or is_plucked(p))
+    if is_free and vibrato.is_requested(p):
+        pitch = note_pitch(p)
+        string, position = choose(p, pitch, BEATS[p.gesture.row], True, requested_speed(p))
+        if string == 0:
+            left_hand.stop(p, c, string, position, min_press(p, string), STEP_MS)
+            begin_tuning(p, pitch)
+            set_bow_pressure(p, c)
+            update_bow(p, c)
+            pause_listening(p, c, SLURRED_MS)
+    vibrato.set_vibrato(p, c)
 
 
 @compiled_exactly

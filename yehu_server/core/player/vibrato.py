@@ -27,6 +27,9 @@ SLOW_FROM_S = 0.3  # between notes of unknown length that may have one on an ope
 LEAST_PRESS = 0.1  # variation of the finger force that asks for one
 # It is narrower near the nut [Pop]: its share there, and from where on it is whole.
 AT_NUT, WHOLE_FROM = 0.6, 6.0  # semitones above the open string
+# The finger presses less far up the inner string, which its force would sharpen by more than a
+# semitone: its share there, from where on it falls, and in how many semitones.
+INNER_SHARE, INNER_FROM, INNER_WITHIN = 0.25, 2.0, 3.0
 FADING_MS = 600.0  # after the last note
 # How players of a section differ in rate, depth and delay of their vibrato, and its least factor.
 OTHER_RATE, OTHER_DEPTH, OTHER_DELAY = 0.3, 0.9, 1.2
@@ -45,7 +48,7 @@ def set_vibrato(p: Any, c: Any) -> None:
         cents = min(cents, p.vibrato_table[at, DEPTH_SHARE] * max(cents, DEFAULT_DEPTH_CENTS))
         upward = p.vibrato_table[at, CENTRE]
     hertz = row[HERTZ] if own else p.value[PLAYING.vibrato_rate]
-    press = row[PRESS_SHARE] if own else p.value[PLAYING.vibrato_press]
+    press = (row[PRESS_SHARE] if own else p.value[PLAYING.vibrato_press]) * press_share(p)
     move_parameter(p, c, VIBRATO.depth, cents * other_factor(p, 1, OTHER_DEPTH), DEFAULT_RAMP_MS)
     move_parameter(p, c, VIBRATO.press, press, DEFAULT_RAMP_MS)
     move_parameter(p, c, VIBRATO.upward, upward, DEFAULT_RAMP_MS)
@@ -107,6 +110,16 @@ def requested_cents(p: Any) -> float:
     above = vibrated_pitch(p) - p.open_note[max(p.string, 0)]
     near = min(max(above / WHOLE_FROM, 0.0), 1.0)
     return float(fingered(p) * OWN_CENTS * (AT_NUT + (1.0 - AT_NUT) * near))
+
+
+@compiled_exactly
+def press_share(p: Any) -> float:
+    """How much of a variation of the finger force is played."""
+    if p.string != 0:
+        return 1.0
+    above = vibrated_pitch(p) - p.open_note[0]
+    far = min(max((above - INNER_FROM) / INNER_WITHIN, 0.0), 1.0)
+    return float(1.0 + (INNER_SHARE - 1.0) * far)
 
 
 @compiled_exactly

@@ -120,6 +120,15 @@ def test_listening_can_be_ended_and_ends_after_a_minute(still):
         assert not still.player.mapping.of("cc 20")
 
 
+def test_a_refused_call_leaves_one_that_waits(still):
+    still.ask("/learn", "/playing/vibrato")
+    for refused in (("/playing/none",), ("/bow/speed",), (1.0,), ("/playing/speed", "soft")):
+        assert answers(still.ask("/learn", *refused), "/error")
+    turn(still, 20, 0, 127)
+    (learned,) = answers(still.peer.received(), "/learned")
+    assert learned[:2] == ["/yehu/playing/vibrato", "cc 20"]
+
+
 def test_what_cannot_be_kept_is_reported_and_changes_nothing(still, config_home):
     before = still.player.mapping
     still.ask("/learn", "/playing/vibrato")

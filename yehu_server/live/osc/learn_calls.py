@@ -31,8 +31,8 @@ class LearnCalls(GroupCalls):
     )
     def _learn(self, call: Request) -> None:
         """``/learn [ADDRESS [SOFT [ONLY]]]``."""
-        self._player.learning.listen(None)
         if not call.arguments or list(call.arguments) == [None]:
+            self._player.learning.listen(None)
             self._send(call.peer, "/learning", "")
             return
         address, soft, only = call.word_and_flags(2)

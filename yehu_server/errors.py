@@ -108,7 +108,10 @@ def near_address(
     if len(name) >= SHORTEST_BEGINNING:
         found += sorted((each for each in known if each.startswith(path)), key=len)
     shown = groups | {each: each for each in known}
-    return _hint(found[0]) if found else _most_like(path, shown, least)
+    if found:
+        return _hint(found[0])
+    names = {each.rpartition("/")[2]: each for each in reversed([*known])} if name == path else {}
+    return _most_like(name, names, least) or _most_like(path, shown, least)
 
 
 def _most_like(word: str, shown: Mapping[str, str], least: float) -> str:

@@ -80,6 +80,7 @@ def test_the_engine_holds_its_rows_in_the_order_of_the_table():
         ("/playing/artic", "/playing/articulation"),
         ("reverb", "/room/level"),
         ("speed", "/playing/speed"),
+        ("vibratto", "/playing/vibrato"),
     ],
 )
 def test_a_near_miss_is_answered_with_what_was_meant(wrong, meant):

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from yehu_server.errors import MappingError
+from yehu_server.errors import MappingError, ParameterError
 from yehu_server.params.spec import Curve
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import load, mapping_folder, user_mappings
-from yehu_server.playing.mapping_file import read_mapping_file
+from yehu_server.playing.mapping_file import read_mapping_file, setting
 from yehu_server.playing.mapping_writer import canonical
 from yehu_server.util.documents import MAX_ERRORS
 
@@ -224,3 +224,12 @@ def test_what_is_tidied_says_what_it_shall_whatever_the_text_said():
         changed = replace(contents, **{name: other})
         written = canonical(changed, path.read_text(encoding="utf-8"))
         assert read_mapping_file(path, written) == changed, name
+
+
+def test_an_articulation_is_set_by_its_chinese_name_too():
+    for text in ("articulation=颤音", "/playing/articulation=trill", "articulation=20"):
+        assert setting(text) == ("/playing/articulation", 20.0)
+    assert setting("vibrato=30") == ("/playing/vibrato", 30.0)
+    for wrong in ("articulation=tril", "articulation", "string=颤音", "/room/size=颤音"):
+        with pytest.raises(ParameterError):
+            setting(wrong)

@@ -1,6 +1,6 @@
 """Bind the next control that you move to a parameter of a running server.
 
-  yehu-server learn /playing/vibrato
+  yehu-server learn vibrato
   yehu-server learn --soft /playing/pressure /playing/bow_position
   yehu-server learn --only /playing/vibrato
   yehu-server learn
@@ -37,7 +37,7 @@ def add_to(commands: Any) -> None:
     add_options(
         parser,
         """
-        parameters ADDRESS: the parameters; without any, the command asks for them
+        parameters ADDRESS: the parameters, such as vibrato; without any, the command asks for them
         --soft: soft take-over: the knob has no effect until it reaches the present value
         --only: take the parameter away from all other controls, until --forget
         --forget: remove what was learned for these parameters, and give back what it took

@@ -15,7 +15,7 @@ from yehu_server.cli.sound_options import add_room, check_room, in_room
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.live.part_addresses import check_own, group_of, no_part
-from yehu_server.params.table import assignment, find
+from yehu_server.params.table import find
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -114,11 +114,13 @@ def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | Non
 
 def _options_of(own: argparse.Namespace, number: int) -> PlayingOptions:
     """The options of a part with arguments of its own."""
+    from yehu_server.playing.mapping_file import setting
+
     try:
         playing = playing_options_of(own, is_live=True)
         for part, text in own.part_set:
             if part == number:
-                check_own(group_of(part - 1), assignment(text)[0])
+                check_own(group_of(part - 1), setting(text)[0])
     except YehuError as error:
         raise type(error)(f"part {number}: {error}") from error
     shared = [address for address, _ in playing.start if find(address).is_shared]

@@ -12,7 +12,7 @@ from yehu_server.cli.converters import number_within, whole_within
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
 from yehu_server.params.preset_file import FIRST_LIVE
-from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, assignment
+from yehu_server.params.table import HIGHEST_A4, LOWEST_A4
 
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
@@ -41,7 +41,7 @@ def add_playing(group: Any) -> None:
         --practice FILE: bowing table, as yehu-server practise writes it (default:
             NAME.practice.json beside an instrument file NAME.toml, else the shipped one)
         --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1 or
-            articulation=trill; may be repeated
+            articulation=trill (or 颤音); may be repeated
         --open-strings: when to play C5 (of a yehu) on the open outer string instead of stopping
             the inner one (default: always)
         --seed N: seed of the random variation of the player, 0 to 65535 (default: 0)
@@ -138,11 +138,12 @@ def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) 
     `is_live`: as of `table_options_of`.
     """
     from yehu_server.core.player.fingering import OpenStrings
+    from yehu_server.playing.mapping_file import setting
 
     channel = getattr(arguments, "channel", None)
     playing = replace(
         table_options_of(arguments, is_live=is_live),
-        settings=tuple(assignment(text) for text in arguments.set),
+        settings=tuple(setting(text) for text in arguments.set),
         open_strings=OpenStrings(arguments.open_strings),
         channels=None if channel is None else frozenset(channel),
     )

@@ -29,7 +29,7 @@ def answers(heard, address: str) -> list[list]:
     return [message.arguments for message in heard if message.address == f"/yehu{address}"]
 
 
-@pytest.mark.parametrize("address", ["/playing/vibrato", "/yehu/playing/vibrato/unit"])
+@pytest.mark.parametrize("address", ["vibrato", "/playing/vibrato", "/yehu/playing/vibrato/unit"])
 def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
     assert answers(still.ask("/learn", address), "/learning") == [["/yehu/playing/vibrato"]]
     turn(still, 20, 10, 20, 64)

@@ -14,7 +14,7 @@ from yehu_server.params.table import PREFIX, UNIT
 from yehu_server.playing import learn
 from yehu_server.playing.learn import LearnedSource
 from yehu_server.playing.mapping import Mapping
-from yehu_server.playing.mapping_file import settable_param
+from yehu_server.playing.mapping_file import full_address, settable_param
 from yehu_server.playing.sources import is_address
 
 PATIENCE_S = 60.0  # to wait for something to be moved
@@ -113,6 +113,6 @@ class LearnCalls(GroupCalls):
         group, own = split_group(plain)
         if group not in ("", self._group):
             raise ParameterError(f"{address}: belongs to another part; send {PREFIX}{group}/learn")
-        own = own.removesuffix(UNIT)
+        own = full_address(own.removesuffix(UNIT))
         check_own(self._group, own)
         return settable_param(own, what).address

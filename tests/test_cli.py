@@ -29,6 +29,7 @@ from yehu_server.cli.serve import _Ending
 from yehu_server.errors import DeviceError
 from yehu_server.live.audio.output import shared_memory
 from yehu_server.scores.score import LONGEST_DURATION_H
+from yehu_server.system.terminals import quoted
 from yehu_server.util.sound_file import sound_file
 
 FULL = Path("/dev/full")
@@ -142,6 +143,15 @@ def test_a_call_that_is_not_complete_gets_one_line(subtests, refused):
     ]:
         with subtests.test(words=words):
             assert "--help" in refused(*words)
+
+
+def test_a_command_in_a_folder_with_a_space_is_named_as_one_types_it(monkeypatch, capsys):
+    monkeypatch.setenv("YEHU_COMMAND", "/my music/yehu")
+    with pytest.raises(SystemExit):
+        main(["learn", "--help"])
+    help_text = capsys.readouterr().out
+    assert f"\n  {quoted('/my music/yehu')} learn --soft " in help_text
+    assert quoted("/my music/yehu") != "/my music/yehu"
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="no terminal is hung up here")

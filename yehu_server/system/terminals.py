@@ -1,7 +1,14 @@
-"""How a terminal completes words as somebody types."""
+"""What somebody types in a terminal: words that it completes, and those that need quotes."""
 
+import shlex
+import subprocess
 import sys
 from collections.abc import Callable
+
+
+def quoted(word: str) -> str:
+    """A word as one types it, in quotes where it needs them."""
+    return subprocess.list2cmdline([word]) if sys.platform == "win32" else shlex.quote(word)
 
 
 def complete_by(complete: Callable[[str, int], str | None]) -> None:

@@ -2,20 +2,20 @@
 
 import importlib
 import os
-import shlex
 import sys
 
 from yehu_server.errors import ParameterError
+from yehu_server.system.terminals import quoted
 
 
 def command_name() -> str:
-    """The command as it was called: ``scripts/yehu`` says its own name in YEHU_COMMAND."""
-    return os.environ.get("YEHU_COMMAND", "yehu-server")
+    """The command as one types it again: ``scripts/yehu`` says its own name in YEHU_COMMAND."""
+    return quoted(os.environ.get("YEHU_COMMAND", "yehu-server"))
 
 
 def install_command(extra: str) -> str:
     """The command that installs an extra for the Python that runs this, also in a checkout."""
-    return f"{shlex.quote(sys.executable)} -m pip install 'yehu-server[{extra}]'"
+    return f"{quoted(sys.executable)} -m pip install 'yehu-server[{extra}]'"
 
 
 def require_package(module: str, what: str, extra: str) -> None:

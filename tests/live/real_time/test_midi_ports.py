@@ -378,6 +378,25 @@ def test_a_name_that_no_port_has_is_reported_once_and_heard_when_it_comes():
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]
 
 
+@pytest.mark.parametrize(
+    ("patterns", "reason", "needs_library", "line"),
+    [
+        ((), "no JACK server", False, "MIDI: no keyboard found; looking again now and then"),
+        (("keystep", "breath"), "none", False, "MIDI: no keyboard named keystep or breath found; "),
+        ((), "pip install x", True, "MIDI: no keyboard found: pip install x; looking again"),
+    ],
+)
+def test_where_there_is_no_midi_the_cause_is_said_where_it_helps(
+    patterns, reason, needs_library, line
+):
+    said = []
+    player, memory = SimpleNamespace(learning=SimpleNamespace()), SimpleNamespace(inherited=[])
+    ports = MidiPorts([player], MidiOptions(patterns), memory, [0], said.append)
+    ports.on_event({"event": "none", "reason": reason, "needs_library": needs_library})
+    assert said[0].startswith(line)
+    assert ports.problem == reason
+
+
 # ---------------------------------------------------------------- without a MIDI system
 
 
@@ -396,7 +415,7 @@ def test_without_a_midi_system_it_is_useful_and_one_that_comes_is_found(
     jackd.stop()
     server = serve("--midi-api", "jack", "--audio-device", "null")
     osc = server.osc()
-    server.said("MIDI: none")
+    server.said("MIDI: no keyboard found")
     osc.send("/note", 67, 90)
     until(lambda: osc.status()["note"] > 66.0, "OSC to play", 2.0)
     jackd.restart()

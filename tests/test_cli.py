@@ -190,7 +190,7 @@ def test_a_person_reads_what_came_of_it_a_program_one_object_and_who_wants_it_no
     code, told, err = command(*into, out / "x")
     assert (code, err) == (0, "")  # no bar in a pipe
     assert str(out / "x") in told
-    assert ("channels: 1 (1 note)" in told) == (into[0] == "render")
+    assert ("\nMIDI channel 1 (1 note)" in told) == (into[0] == "render")
     assert "outside" not in told
     assert command(*into, out / "x", "--quiet") == (0, "", "")
     for extra in ((), ("--quiet",)):

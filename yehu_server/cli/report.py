@@ -44,7 +44,8 @@ def render_report(target: Path, summary: Summary) -> str:
     if len(summary.parts) > 1 or summary.parts[0].people > 1:
         lines += map(_part_line, summary.parts)
     else:
-        lines.append(f"channels: {heard}" if heard else "no notes to play")
+        plural = "s" if len(summary.notes_by_channel) > 1 else ""
+        lines.append(f"MIDI channel{plural} {heard}" if heard else "no notes to play")
     skips = summary.policy is RangePolicy.SKIP
     moved_hint = "" if skips else " (--range skip leaves out key switches of another library)"
     lines += summary.remarks("; --channel 10 plays them", moved_hint)

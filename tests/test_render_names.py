@@ -83,8 +83,13 @@ def test_what_is_named_wrongly_is_answered_with_what_there_is(command, tmp_path)
     out = tmp_path / "out.wav"
     tune = Path(__file__).parents[1] / "examples" / "tunes" / "twinkle.jianpu"
     for words, said in (
-        (("render", tune, "--room", "church"), "no room 'church' (there are: chamber, courtyard, "),
-        (("render", tune, "--room", "flautando"), "flautando: not a room: it sets /bow/noise"),
+        (("render", tune, "--room", "church"), "church: not a room (there are: chamber, "),
+        (("render", tune, "--room", "haal"), "); did you mean hall?"),
+        (("render", tune, "--preset", "halll"), "); did you mean hall?"),
+        (
+            ("render", tune, "--room", "flautando"),
+            "flautando: not a room (it sets /bow/noise; there are: chamber, courtyard, ",
+        ),
         (("render", score), "it is text; scores in text are named .jianpu, .abc or .musicxml"),
         (("build", "vst3"), "'vst3' is none of wasm, library, tables, plugin"),
     ):

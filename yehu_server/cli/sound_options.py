@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_options, chosen
 from yehu_server.cli.converters import number_within, positive, target, whole
-from yehu_server.errors import ParameterError
+from yehu_server.errors import ParameterError, did_you_mean
 
 if TYPE_CHECKING:
     from yehu_server.playing.options import PlayingOptions
@@ -138,15 +138,14 @@ def sound_options_of(arguments: argparse.Namespace, form: str) -> Options:
 def room_of(name: str, presets: Presets) -> Values:
     """The values of a preset of rooms; raises YehuError where it is none."""
     from yehu_server.params.preset_file import is_of_room
-    from yehu_server.playing.preset_folders import is_name
+    from yehu_server.playing.preset_folders import MINE, is_name
 
-    names = presets.names()
-    if is_name(name) and name not in names:
-        rooms = [each for each in names if presets.find(each).is_room]
-        raise ParameterError(f"no room {name!r} (there are: {', '.join(rooms)})")
-    preset = presets.find(name)
-    if not preset.is_room:
-        other = [each for each in preset.values if not is_of_room(each)]
-        what = f"it sets {other[0]}" if other else "it sets nothing"
-        raise ParameterError(f"{name}: not a room: {what}")
-    return tuple(preset.values.items())
+    is_known = not is_name(name) or name.removeprefix(MINE) in presets.names()
+    preset = presets.find(name) if is_known else None
+    if preset is not None and preset.is_room:
+        return tuple(preset.values.items())
+    other = [each for each in preset.values if not is_of_room(each)] if preset else []
+    why = f"it sets {other[0]}; " if other else ""
+    rooms = [each.name for each in presets.all()[0] if each.is_room]
+    near = did_you_mean(name, rooms)
+    raise ParameterError(f"{name}: not a room ({why}there are: {', '.join(rooms)}){near}")

@@ -11,7 +11,7 @@ import tomlkit
 from platformdirs import user_config_path
 from tomlkit.exceptions import TOMLKitError
 
-from yehu_server.errors import OutputError, PresetError
+from yehu_server.errors import OutputError, PresetError, did_you_mean
 from yehu_server.params.preset_file import SAVED, VERSION, Preset, document_of, preset_from
 from yehu_server.util.files import is_plain_name, path_inside, read_text, shipped_folder, write_text
 
@@ -88,7 +88,8 @@ class Presets:
                 return path
         names = self.names()
         more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
-        raise PresetError(f"no preset {name!r} (there are: {', '.join(names[:MAX_NAMED])}{more})")
+        there = f"{', '.join(names[:MAX_NAMED])}{more}"
+        raise PresetError(f"no preset {name!r} (there are: {there}){did_you_mean(name, names)}")
 
     def load(self, name: str) -> Preset:
         """Read a preset by its name, or several by names with a plus between them.

@@ -96,7 +96,7 @@ def test_others_are_taken_away_only_if_asked_and_come_back():
 def test_what_was_added_what_stays_and_what_is_gone_is_said():
     before = load("keyboard-vibrato-wheel")
     for source, only, said in [
-        ("cc 21", False, "cc 21 added: /playing/vibrato; cc 77, cc 1 keep it"),
+        ("cc 21", False, "cc 21 added: /playing/vibrato; cc 77, cc 1 still move it, too"),
         ("cc 77", True, "cc 77 added: /playing/vibrato; cc 1 no longer moves /playing/vibrato"),
     ]:
         mapping, path = learn(

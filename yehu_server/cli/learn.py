@@ -22,7 +22,7 @@ from yehu_server.cli.converters import positive
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.errors import ParameterError, YehuError
 from yehu_server.live.part_addresses import group_of
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import PREFIX, TABLE
 from yehu_server.system.terminals import complete_by
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
         _print_binds(returned, "again")
         return
     client.send(f"{own}/learn", address, int(arguments.soft), int(arguments.only))
-    (target,) = client.answer(f"{own}/learning").arguments
+    target = client.answer(f"{own}/learning").arguments[0].removeprefix(PREFIX)
     print_result(f"move the control for {target} ... (Ctrl-C ends)", flush=True)
     try:
         for message in client.answers(LONGEST_S):
@@ -79,7 +79,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
                 _, source, file, others, *lost = message.arguments
                 print_result(f"{source} added: {target}, saved in {file}")
                 if others:
-                    print_result(f"  {others} {'keep' if ', ' in others else 'keeps'} it")
+                    print_result(f"  {others} still move{'s' * (', ' not in others)} it, too")
                 _print_binds(lost, "no longer, until --forget")
                 return
     except KeyboardInterrupt:
@@ -92,7 +92,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
 def _print_binds(words: list[str], what: str) -> None:
     """Print binds that are gone or back: their sources and targets, one after another."""
     for source, target in zip(words[::2], words[1::2], strict=True):
-        print_result(f"  {source} moves {target} {what}")
+        print_result(f"  {source} moves {target.removeprefix(PREFIX)} {what}")
 
 
 def _ask(client: OscClient, arguments: argparse.Namespace) -> None:

@@ -264,7 +264,7 @@ def added(before: Mapping, after: Mapping, target: str, found: LearnedSource) ->
     """What `learn` has changed, in a line: what was added, what stays and what is gone."""
     words = [f"{found} added: {target}"]
     if stay := others(after, target, found.source):
-        words.append(f"{', '.join(stay)} {'keep' if len(stay) > 1 else 'keeps'} it")
+        words.append(f"{', '.join(stay)} still move{'s' * (len(stay) == 1)} it, too")
     words += [f"{lost} no longer moves {of}" for lost, of in changes(before, after)]
     return "; ".join(words)
 

@@ -38,7 +38,7 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
     assert learned[2].endswith("keyboard.toml")
     assert learned[3:] == ["cc 77"]  # which keeps it
     assert still.services.changed == ["/"]
-    assert "cc 20 added: /playing/vibrato; cc 77 keeps it" in still.services.said[0]
+    assert "cc 20 added: /playing/vibrato; cc 77 still moves it, too" in still.services.said[0]
     turn(still, 20, 127)
     assert still.value("/playing/vibrato") == 100.0
     turn(still, 21, 0, 127)  # only one thing is learned

@@ -11,7 +11,9 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.errors import OutputError
 from yehu_server.scores.capture_format import as_line
 from yehu_server.scores.capture_header import SessionStart, header_of, session_start_of
+from yehu_server.system.terminals import quoted
 from yehu_server.util.files import create, discard, error_reason, is_removed, write_all
+from yehu_server.util.hints import command_name
 
 ROOM_BYTES = 1 << 16  # free space needed to begin a capture
 
@@ -27,11 +29,13 @@ class CaptureWriter:
         self.target = target
         self._file = create(target, overwrite=overwrite, room_bytes=ROOM_BYTES)
         self._whole_bytes = 0
+        self.events = 0  # commands written
         self._write([header_of(beginning)])
 
     def commands(self, commands: Any, player: int = 0) -> None:
         """Add commands [shape=(n,), dtype=COMMAND] that a player, counted from 0, applied."""
         self._write(as_line(command, player) for command in commands)
+        self.events += len(commands)
 
     def note(self, what: str, frame: int, **details: int) -> None:
         """Add a ``rest`` (after a gap `since` a frame), or ``lost`` `events`."""
@@ -68,7 +72,7 @@ class LiveCapture:
 
     The ensemble's instruments must report their commands (``Instrument.report_commands``) from the
     first frame on; `has_room`: whether it plays in a room. `on_message` is called with a line when
-    the capture ends by itself. Raises OutputError where the file cannot be written, or is
+    the capture ends. Raises OutputError where the file cannot be written, or is
     there.
     """
 
@@ -100,6 +104,7 @@ class LiveCapture:
             self._write(self._writer)
             if is_last:
                 self._writer.close(self._ensemble.frame)
+                self._report_kept(self._writer.target, self._writer.events)
         except OutputError as error:
             kept = "; what was written is kept" if self._writer.target.exists() else ""
             self._writer = None
@@ -110,6 +115,11 @@ class LiveCapture:
         """Write the last commands, and end the capture after the last frame played."""
         self.keep_up(is_last=True)
         self._writer = None
+
+    def _report_kept(self, target: Path, events: int) -> None:
+        what = f"{events} event{'s' * (events != 1)}"
+        again = f"{command_name()} replay {quoted(str(target))} -o OUT.wav"
+        self._on_message(f"{target}: {what}; `{again}` renders it")
 
     def discard(self) -> None:
         """End the capture and remove its file."""

@@ -62,8 +62,8 @@ def add_tables(group: Any) -> None:
         --mpe: start with one MPE zone of 15 member channels; without --mapping, use the mapping
             named mpe
         --preset NAME: sound to start with: the name of a preset, or a file; several with a plus,
-            such as sul-tasto+hall (default: none; of serve without --mapping and --mpe,
-            {FIRST_LIVE}); yehu-server presets list names all
+            such as sul-tasto+hall (default: none, but {FIRST_LIVE} for serve without --mapping or
+            --mpe); yehu-server presets list names all
         --programs: let MIDI program changes select presets (default: they are ignored)
         """,
     )
@@ -89,8 +89,8 @@ def add_tuning(group: Any) -> None:
         """
         --tuning FILE.scl: Scala scale, with C as its first note: a file, or the name of a shipped
             one (default: equal temperament)
-        --keyboard-map FILE.kbm: Scala keyboard map: which key plays which note of a scale of other
-            than twelve, and the pitch: a file, or the name of a shipped one
+        --keyboard-map FILE.kbm: Scala keyboard map, for scales that have not twelve notes: which
+            key plays which note, at what pitch; a file, or the name of a shipped one
         """,
         tuning=Path,
         keyboard_map=Path,

@@ -111,7 +111,7 @@ def near_address(
     if found:
         return _hint(found[0])
     names = {each.rpartition("/")[2]: each for each in reversed([*known])} if name == path else {}
-    return _most_like(name, names, least) or _most_like(path, shown, least)
+    return _most_like(name, names, 0.7) or _most_like(path, shown, least)
 
 
 def _most_like(word: str, shown: Mapping[str, str], least: float) -> str:

@@ -179,7 +179,7 @@ class OscHandler:
         players = self._players
         if group:
             players = players[part_of(group) :][:1] if group in self._groups else ()
-        hearing = [player for player in players if player.learning.waits and is_own(plain)]
+        hearing = [player for player in players if is_own(plain) and player.learning.expects(plain)]
         move = own.get(address)
 
         def hear(call: Request) -> None:

@@ -118,9 +118,9 @@ def parameter_of(address: str) -> str:
 def near(address: str, parts: int, known: Iterable[str]) -> str:
     """The reason for an unknown address, with a similar one of those known, if there is one."""
     if not address.startswith(PREFIX + "/"):
-        hint = near_address(
-            PREFIX + address[: limits.PATTERN], [PREFIX + one for one in known], 0.8
-        )
+        bare = address[: limits.PATTERN]
+        least = (len(PREFIX) + 0.8 * len(bare)) / (len(PREFIX) + len(bare))  # of `bare` 0.8
+        hint = near_address(PREFIX + bare, [PREFIX + one for one in known], least)
         return f"unknown address (all but learned ones begin with {PREFIX}/){hint}"
     group, own = part_addresses.split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
     try:

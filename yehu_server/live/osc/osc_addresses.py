@@ -81,6 +81,7 @@ def _either(words: list[str]) -> Piece:
     }
 
 
+ROOM_GUESSES = ("/room", "/room/load", "/room/name", "/room/preset", "/room/type")
 NAMES = [row.name for row in STATUS]
 PART_NAMES = [row.name for row in PART_STATUS]
 
@@ -130,6 +131,8 @@ def near(address: str, parts: int, known: Iterable[str]) -> str:
             parameter_of(own)
     except YehuError as error:
         return str(error)
+    if own in ROOM_GUESSES:
+        return f"unknown address; a room is a preset: {PREFIX}/preset/load hall"
     of_group = [PREFIX + one for one in known if part_addresses.split_group(one)[0] == group]
     return f"unknown address{near_address(address, of_group, 0.75, prefix=PREFIX + group)}"
 

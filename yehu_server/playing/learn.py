@@ -32,6 +32,7 @@ from yehu_server.util.processes import machine_lock
 
 # How far a source has to move, 0 to 1: pedals and breath sensors are noisy at rest.
 DISTANCE = 1.0 / 16.0
+FULL = (1.0, float(STEPS), 255.0, 1023.0, 16383.0)  # where ranges of OSC addresses end
 STILL_S = 2.0  # after which what was just learned may be learned again
 PRESSURES = {"aftertouch": sources.PRESSURE, "polytouch": sources.POLY_PRESSURE}
 LOCK = "learned"  # another server may learn at the same time
@@ -90,18 +91,21 @@ class Learner:
     def learn_from_address(self, address: str, argument: float) -> LearnedSource | None:
         """Receive a number at an OSC address of the user's own; return as `hear` does.
 
-        A value beyond 1 means that it sends 0 to 127. A step from 0 to 1 may be the first of 127,
-        so it counts with the value after it: a button's 0, or the next of a fader.
+        Its range ends at the next of FULL beyond its values, and begins as far below 0 where one is
+        below 0. A step from 0 to 1 may be the first of 127, so it counts with the value after it: a
+        button's 0, or the next of a fader.
         """
         if self._still_moves(address):
             return None
         lowest, highest = self._ends.get(address, (argument, argument))
         lowest, highest = ends = min(lowest, argument), max(highest, argument)
         self._ends[address] = ends
-        full = 1.0 if highest <= 1.0 else float(STEPS)
-        if highest - lowest < DISTANCE * full or (*ends, argument) == (0.0, 1.0, 1.0):
+        farthest = max(abs(lowest), abs(highest))
+        full = next((end for end in FULL if farthest <= end), farthest)
+        least = -full if lowest < 0.0 else 0.0
+        if highest - lowest < DISTANCE * (full - least) or (*ends, argument) == (0.0, 1.0, 1.0):
             return None
-        return LearnedSource(address, (0.0, full))
+        return LearnedSource(address, (least, full))
 
     def _control(self, channel: int, control: int, value: int) -> LearnedSource | None:
         state = self._channels.setdefault(channel, _Channel())

@@ -50,12 +50,15 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
 
 def test_a_fader_learns_the_range_that_it_moves_through(still, wire, subtests):
     """The first steps of 0 to 127 are those of a button, 0 and 1."""
-    for number, (values, source, full) in enumerate([
-        (range(9), "/fader0 (0 to 127)", 127.0),
-        ((127, 126, 100), "/fader1 (0 to 127)", 127.0),
-        ((0.0, 0.05, 0.1), "/fader2", 1.0),
-        ((0, 1, 0), "/fader3", 1.0),
-        ((1, 0), "/fader4", 1.0),
+    for number, (values, source, ends) in enumerate([
+        ((-0.9, -0.5), "/fader0 (-1 to 1)", (-1.0, 1.0)),
+        ((0.2, -0.3), "/fader1 (-1 to 1)", (-1.0, 1.0)),
+        ((900, 1000), "/fader2 (0 to 1023)", (0.0, 1023.0)),
+        (range(9), "/fader3 (0 to 127)", (0.0, 127.0)),
+        ((127, 126, 100), "/fader4 (0 to 127)", (0.0, 127.0)),
+        ((0.0, 0.05, 0.1), "/fader5", (0.0, 1.0)),
+        ((0, 1, 0), "/fader6", (0.0, 1.0)),
+        ((1, 0), "/fader7", (0.0, 1.0)),
     ]):  # fmt: skip
         with subtests.test(values=values):
             address = f"/fader{number}"
@@ -67,8 +70,16 @@ def test_a_fader_learns_the_range_that_it_moves_through(still, wire, subtests):
             assert learned[1] == source
             assert source in still.services.said[-1]
             still.pass_time(0.05)
-            still.take(wire.message(address, full))
-            assert still.value("/playing/vibrato") == 100.0
+            for end, reached in zip(ends, (0.0, 100.0), strict=True):
+                still.take(wire.message(address, end))
+                still.pass_time(0.05)
+                assert still.value("/playing/vibrato") == reached
+            still.peer.received()
+            for _ in range(2):
+                still.take(wire.message(address, 2.0 * ends[1]))
+            (told,) = still.peer.received()
+            assert told.address == "/yehu/moved"
+            assert "needs input = [LOWEST, HIGHEST] in the mapping keyboard" in told.arguments[1]
 
 
 def test_one_sweep_is_learned_once_until_the_control_was_still(still, wire):

@@ -80,7 +80,7 @@ def own_calls(mapping: Mapping, group: str = FIRST, below: str = "") -> list[Cal
             below + bind.source,
             f"Moves {PREFIX}{group}{bind.target}, by the mapping {mapping.name}.",
             (Argument("place", lo=min(bind.input_range), hi=max(bind.input_range)),),
-            partial(PartCalls.move, address=bind.source),
+            partial(PartCalls.move, bind=bind),
         )
         for bind in mapping.binds
         if is_address(bind.source)

@@ -50,9 +50,10 @@ class OscHandler:
             self._acts |= acts(group, context)
         self.addresses = tuple(PREFIX + address for address in self._acts)
         # Messages of another server that was made to send us its values.
-        self._answers: dict[str, Act] = {f"{PREFIX}/error": lambda _call: None}
+        self._answers: dict[str, Act] = {
+            f"{PREFIX}/{answer}": lambda _call: None for answer in ("error", "moved")
+        }
         for group in self._groups:
-            self._answers[f"{PREFIX}{group}/moved"] = lambda _call: None
             self._answers[f"{PREFIX}{group}/subscribed"] = lambda call: self.clients.mute(
                 call.peer, within_an_hour(call.numbers(1)[0])
             )

@@ -13,6 +13,7 @@ from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of
 from yehu_server.params.spec import Param
 from yehu_server.params.table import PREFIX, TABLE, UNIT
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.part_state import within_midi
 from yehu_server.playing.player import Player
 from yehu_server.playing.stringing import range_text
@@ -59,9 +60,18 @@ class PartCalls(GroupCalls):
         self._set(call, param.address, param.from_unit(unit))
         self._echo(call.peer, [param.address + UNIT])
 
-    def move(self, call: Request, address: str) -> None:
+    def move(self, call: Request, bind: Bind) -> None:
         """Move what the mapping binds to an address of the user's own."""
-        self._player.move(address, call.numbers(1)[0], frame=call.frame)
+        (value,) = call.numbers(1)
+        self._player.move(bind.source, value, frame=call.frame)
+        lo, hi = sorted(bind.input_range)
+        margin = (hi - lo) / 100.0  # faders overshoot by rounding
+        if not lo - margin <= value <= hi + margin:
+            name = self._player.mapping.name
+            what = f"another range needs input = [LOWEST, HIGHEST] in the mapping {name}"
+            self._tell_once(
+                call.peer, bind.source, f"{value:g} is outside {lo:g} to {hi:g}; {what}"
+            )
 
     @osc_call("/params", "Sends all parameters: value, range, default, unit, meaning.")
     def _send_params(self, call: Request) -> None:
@@ -85,17 +95,20 @@ class PartCalls(GroupCalls):
             tuned, played = self._player.pitches(note)
             if played != tuned:
                 what = "it does not sound" if played is None else f"it sounds as {played:g}"
-                self._tell_once(call.peer, "/note", note, what)
+                self._tell_moved(call.peer, "/note", note, what)
 
-    def _tell_once(self, peer: Peer, address: str, note: float, what: str) -> None:
-        """Send a peer, once for each address, what becomes of a note outside the range."""
+    def _tell_moved(self, peer: Peer, address: str, note: float, what: str) -> None:
+        outside = f"{note:g} is outside {range_text(self._player.notes)}; {what}"
+        self._tell_once(peer, self._prefix + address, outside)
+
+    def _tell_once(self, peer: Peer, address: str, what: str) -> None:
+        """Send a peer, once for each address, what becomes of a value outside the range."""
         told = self._context.told
-        if (peer, self._prefix + address) not in told:
+        if (peer, address) not in told:
             if len(told) >= limits.PEERS:
                 told.clear()
-            told.add((peer, self._prefix + address))
-            outside = f"{note:g} is outside {range_text(self._player.notes)}; {what}"
-            self._send(peer, "/moved", self._prefix + address, outside)
+            told.add((peer, address))
+            self._clients.send(peer, pack(f"{PREFIX}/moved", address, what))
 
     @osc_call("/note/off", "Ends a note.", NOTE)
     def _note_off(self, call: Request) -> None:
@@ -106,7 +119,7 @@ class PartCalls(GroupCalls):
         pitch = within_midi("pitch", call.numbers(1)[0])
         accepted = self._player.slide(pitch, frame=call.frame)
         if accepted != pitch:
-            self._tell_once(call.peer, "/pitch", pitch, f"the finger goes to {accepted:g}")
+            self._tell_moved(call.peer, "/pitch", pitch, f"the finger goes to {accepted:g}")
 
     @osc_call(
         "/bow",

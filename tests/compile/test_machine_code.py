@@ -251,7 +251,7 @@ def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
             patched.setattr(
                 Native, "is_cached", property(lambda self, missing=missing: self is not missing)
             )
-            assert "compiling for this machine, once" in warned(more)
+            assert "compiling for this machine, once, in about a minute" in warned(more)
 
 
 @pytest.mark.slow

@@ -48,6 +48,8 @@ def test_where_to_listen_is_read_or_refused(subtests):
     for text in ["a:b", "a:-1", "a:65536", "a:1.5", "a:1e3", "[::1]:x", "a..b", f"{64 * 'a'}.b"]:
         with subtests.test(text=text), pytest.raises(ParameterError, match="HOST:PORT"):
             parse_address(text, "127.0.0.1", 9000)
+    with pytest.raises(ParameterError, match="9120 is a port: write :9120"):
+        parse_address("9120", "127.0.0.1", 9000)
 
 
 @pytest.mark.parametrize(

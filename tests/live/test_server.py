@@ -9,6 +9,7 @@ from wire import f32
 from yehu_server.errors import DeviceError
 from yehu_server.live.network import Allowed
 from yehu_server.live.osc.listening_sockets import open_both
+from yehu_server.live.web.server import OSCQUERY, listen
 
 HOST = "127.0.0.1"
 
@@ -64,6 +65,12 @@ def test_stopping_while_notes_and_clients_are_there_ends_all(make_live):
 
 
 # ---------------------------------------------------------------- an address in use
+
+
+def test_an_address_in_use_for_oscquery_is_reported_with_others():
+    hint = "in use; play beside it: --osc :9010 --http :9011"
+    with socket.create_server((HOST, 0)) as taken, pytest.raises(DeviceError, match=hint):
+        listen(OSCQUERY, *taken.getsockname())
 
 
 @pytest.mark.parametrize("kind", [socket.SOCK_DGRAM, socket.SOCK_STREAM])

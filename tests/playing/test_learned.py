@@ -243,6 +243,7 @@ def test_after_all_is_forgotten_all_is_as_it_was(subtests, file, alone, only):
         ("all that the control did", [(GAIN, "cc 5")], [GAIN]),
         ("another control for the target", [(VIBRATO, "cc 20"), (VIBRATO, "cc 21")], [VIBRATO]),
         ("a control twice", [(VIBRATO, "cc 20"), (GAIN, "cc 20")], [GAIN, VIBRATO]),
+        ("in the order learned", [(VIBRATO, "cc 20"), (GAIN, "cc 20")], [VIBRATO, GAIN]),
         ("two", [(VIBRATO, "cc 12"), (GAIN, "cc 5")], [VIBRATO, GAIN]),
         ("in any order", [(VIBRATO, "cc 12"), (GAIN, "cc 5")], [GAIN, VIBRATO]),
         ("what was taken already", [(GAIN, "cc 5"), (VIBRATO, "cc 21")], [GAIN, VIBRATO]),

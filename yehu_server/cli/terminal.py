@@ -124,7 +124,7 @@ def warn_of_compiling(arguments: argparse.Namespace, more: Compiled | None = Non
     if WHY_NOT_CACHED and not is_ready:
         warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
     elif not is_ready:
-        warn(f"{COMPILING} ...")
+        warn(f"{COMPILING}, in about a minute ...")
 
 
 def compile_all(arguments: argparse.Namespace, more: Compiled | None = None) -> None:

@@ -90,6 +90,8 @@ def format_address(host: str, port: int) -> str:
 
 def parse_address(text: str, default_host: str, default_port: int) -> Address:
     """Read HOST:PORT, HOST, :PORT or [IPv6]:PORT; raises ParameterError for anything else."""
+    if text.isdecimal():
+        raise ParameterError(f"{text} is a port: write :{text}")
     host, colon, port = text.rpartition(":")
     is_bare_ipv6 = ":" in host and not host.endswith("]")
     if not colon or text.endswith("]") or is_bare_ipv6:

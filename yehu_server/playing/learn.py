@@ -1,6 +1,7 @@
 """MIDI learn: detect which source the user moves, and keep its bind in a mapping file."""
 
 import threading
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -31,6 +32,8 @@ from yehu_server.util.processes import machine_lock
 
 # How far a source has to move, 0 to 1: pedals and breath sensors are noisy at rest.
 DISTANCE = 1.0 / 16.0
+FULL = (1.0, float(STEPS), 255.0, 1023.0, 16383.0)  # where ranges of OSC addresses end
+STILL_S = 2.0  # after which what was just learned may be learned again
 PRESSURES = {"aftertouch": sources.PRESSURE, "polytouch": sources.POLY_PRESSURE}
 LOCK = "learned"  # another server may learn at the same time
 AT_REST = {sources.BEND: 0.5, sources.PRESSURE: 0.0, sources.POLY_PRESSURE: 0.0}
@@ -59,9 +62,14 @@ class _Channel:
 
 
 class Learner:
-    """Compares each source with where it began, until one has moved far enough to be meant."""
+    """Compares each source with where it began, until one has moved far enough to be meant.
 
-    def __init__(self) -> None:
+    `before`: the source that was learned before, and when it moved last (monotonic s). It is
+    ignored until it has been still: one sweep of a fader is meant for one parameter.
+    """
+
+    def __init__(self, before: tuple[str, float] = ("", 0.0)) -> None:
+        self._before, self._moved_s = before
         self._began_at: dict[tuple[int, str], float] = {}
         self._ends: dict[str, tuple[float, float]] = {}  # lowest and highest value, by address
         self._channels: dict[int, _Channel] = {}
@@ -83,16 +91,21 @@ class Learner:
     def learn_from_address(self, address: str, argument: float) -> LearnedSource | None:
         """Receive a number at an OSC address of the user's own; return as `hear` does.
 
-        A value beyond 1 means that it sends 0 to 127. A step from 0 to 1 may be the first of 127,
-        so it counts with the value after it: a button's 0, or the next of a fader.
+        Its range ends at the next of FULL beyond its values, and begins as far below 0 where one is
+        below 0. A step from 0 to 1 may be the first of 127, so it counts with the value after it: a
+        button's 0, or the next of a fader.
         """
+        if self._still_moves(address):
+            return None
         lowest, highest = self._ends.get(address, (argument, argument))
         lowest, highest = ends = min(lowest, argument), max(highest, argument)
         self._ends[address] = ends
-        full = 1.0 if highest <= 1.0 else float(STEPS)
-        if highest - lowest < DISTANCE * full or (*ends, argument) == (0.0, 1.0, 1.0):
+        farthest = max(abs(lowest), abs(highest))
+        full = next((end for end in FULL if farthest <= end), farthest)
+        least = -full if lowest < 0.0 else 0.0
+        if highest - lowest < DISTANCE * (full - least) or (*ends, argument) == (0.0, 1.0, 1.0):
             return None
-        return LearnedSource(address, (0.0, full))
+        return LearnedSource(address, (least, full))
 
     def _control(self, channel: int, control: int, value: int) -> LearnedSource | None:
         state = self._channels.setdefault(channel, _Channel())
@@ -119,8 +132,20 @@ class Learner:
         return found
 
     def _moved(self, channel: int, source: str, position: float) -> LearnedSource | None:
+        if self._still_moves(source):
+            return None
         began = self._began_at.setdefault((channel, source), AT_REST.get(source, position))
         return LearnedSource(source) if abs(position - began) >= DISTANCE else None
+
+    def _still_moves(self, source: str) -> bool:
+        """Whether a source is the one learned before, and has not been still since."""
+        if source != self._before:
+            return False
+        now = time.monotonic()
+        is_still, self._moved_s = now - self._moved_s >= STILL_S, now
+        if is_still:
+            self._before = ""
+        return not is_still
 
 
 class Learning:
@@ -130,6 +155,7 @@ class Learning:
         self._lock = threading.Lock()
         self._learner = Learner()
         self._found: Callable[[LearnedSource], None] | None = None
+        self._last = ("", 0.0)  # the source learned last, and when
         self.on_change: Callable[[], None] = lambda: None  # called where `waits` changes
 
     @property
@@ -137,10 +163,15 @@ class Learning:
         """Whether it waits for a source to move."""
         return self._found is not None
 
+    def expects(self, address: str) -> bool:
+        """Whether it waits for a source to move, or has just learned this one."""
+        source, learned_s = self._last
+        return self.waits or (source == address and time.monotonic() - learned_s < STILL_S)
+
     def listen(self, found: Callable[[LearnedSource], None] | None) -> None:
         """Call `found`, which must not block, once with the source moved next; None: stop."""
         with self._lock:
-            self._learner, self._found = Learner(), found
+            self._learner, self._found = Learner(self._last), found
         self.on_change()
 
     def hear_address(self, address: str, argument: float) -> None:
@@ -159,6 +190,8 @@ class Learning:
         with self._lock:
             found = self._found if source is not None else None
             self._found = None if found is not None else self._found
+            if source is not None and found is not None:
+                self._last = (sources.controller(source.source), time.monotonic())
         if source is not None and found is not None:
             found(source)
             self.on_change()
@@ -209,7 +242,8 @@ def learn(
 def unlearn(mapping: Mapping, target: str) -> tuple[Mapping, int]:
     """Remove the learned binds of a target from the user's file, and give back what they replaced.
 
-    Where none is learned, those that the user has written are removed. Returns the mapping without
+    One whose control has learned another target since then does not come back with that. Where none
+    is learned, those that the user has written are removed. Returns the mapping without
     them, and how many were removed. Raises MappingError as `learn`.
     """
     with machine_lock(data_folder(), LOCK):
@@ -221,11 +255,18 @@ def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int
         return mapping, 0
     contents, text = _own_contents(mapping, path)
     of_target = [own for own in contents.binds if own.target == address]
-    dropped = [own for own in of_target if _is_learned(own)] or of_target
-    if not dropped:
+    kept = [one for own in contents.binds for one in own.replaces]
+    given_up = [one for one in kept if one.target == address and one.is_learned]
+    dropped = [own for own in of_target if _is_learned(own)] or ([] if given_up else of_target)
+    if not (dropped or given_up):
         return mapping, 0
     remaining = [own for own in contents.binds if own not in dropped]
-    binds, back = list(remaining), []
+    binds = [
+        replace(own, replaces=tuple(one for one in own.replaces if one not in given_up))
+        for own in remaining
+    ]
+    back: list[Bind] = []
+    count = len(dropped) + len(given_up)
     for returned in [each for own in dropped for each in own.replaces]:
         # What was learned since then goes first; what the user wrote beside it comes back, too.
         newer = next(
@@ -250,8 +291,8 @@ def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int
         shipped = load(path.stem)
         if text.split() == as_toml(_new_contents(shipped)).split():  # nothing is left of the user
             path.unlink(missing_ok=True)
-            return replace(shipped, mpe=mapping.mpe), len(dropped)
-    return _save(mapping, path, text), len(dropped)
+            return replace(shipped, mpe=mapping.mpe), count
+    return _save(mapping, path, text), count
 
 
 def others(mapping: Mapping, target: str, source: str) -> list[str]:

@@ -212,8 +212,12 @@ class Player(PartState):
 
     def has(self, key: Key) -> bool:
         """Whether the instrument has a note for a key."""
-        tuned = self._tuning.pitch(key.note, self._a4)
-        return tuned is not None and self.policy.fit(tuned, self.notes) is not None
+        return self.pitches(key.note)[1] is not None
+
+    def pitches(self, key: float) -> tuple[float | None, float | None]:
+        """The pitch (fractional MIDI note) of a key, and that within range which it sounds at."""
+        tuned = self._tuning.pitch(key, self._a4)
+        return tuned, None if tuned is None else self.policy.fit(tuned, self.notes)
 
     def note_on(
         self,

@@ -21,12 +21,13 @@ def test_no_client_ends_what_the_command_records(make_live, tmp_path):
     assert "--record ends with the server" in reason
     assert live.server.status()["recording"] == "all.wav"
     client.send("/record/start", "some")  # both at once
-    assert client.wait_for("/record/started") == ["some.wav"]
+    file = str(live.server.options.recordings / "some.wav")
+    assert client.wait_for("/record/started") == [file]
     assert live.server.status()["recording"] == "all.wav; some.wav"
     client.send("/note", 67, 90)
     live.wait_frames(9600)
     client.send("/record/stop")
-    assert client.wait_for("/record/stopped") == ["some.wav"]
+    assert client.wait_for("/record/stopped") == [file]
     assert live.server.status()["recording"] == "all.wav"
     live.end()
     whole, _ = soundfile.read(tmp_path / "all.wav", dtype="float32")
@@ -148,13 +149,16 @@ def test_a_server_asked_to_stop_again_leaves_what_it_has_kept(make_live, tmp_pat
 def test_what_is_recorded_is_a_file_when_it_ends(live):
     client = live.client()
     client.send("/record/start", "take 1")
-    assert client.wait_for("/record/started") == ["take 1.wav"]
+    file = str(live.server.options.recordings / "take 1.wav")
+    assert client.wait_for("/record/started") == [file]
     assert live.server.status()["recording"] == "take 1.wav"
+    client.send("/record/start", "take.mp3")
+    assert client.wait_for("/error")[1] == "take.mp3: recordings are .wav or .flac"
     client.send("/record/start", "take 2")
     assert client.wait_for("/error")[0] == "/yehu/record/start"
     live.wait_frames(9600)
     client.send("/record/stop")
-    assert client.wait_for("/record/stopped") == ["take 1.wav"]
+    assert client.wait_for("/record/stopped") == [file]
     folder = live.server.options.recordings
     assert (folder / "take 1.wav").stat().st_size > 8 * 9600
     client.send("/record/start", "take 1")  # nothing is overwritten

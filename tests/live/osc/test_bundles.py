@@ -39,6 +39,11 @@ def test_time_tags_minutes_ahead_are_told_once_with_their_sender(still, wire, ca
     for seconds in (30.0, 150.0, 200.0):
         packet = wire.message("/yehu/note", 67, 90)
         still.take(wire.bundle(still.clock.time() + seconds, packet))
+    assert still.peer.received() == []
+    still.take(wire.bundle(still.clock.time() + 2 * 86400.0, packet))
+    (refused,) = still.peer.received()
+    assert "172800 s ahead, more than an hour: is the clock right?" in refused.arguments[1]
+    assert still.handler.waiting == 3
     (line,) = [each.getMessage() for each in caplog.records if "ahead" in each.getMessage()]
     assert re.search(r"time tags of \S+ are 1[45]\d s ahead", line)
 

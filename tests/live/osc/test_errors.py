@@ -13,12 +13,15 @@ NOTHING: tuple[Any, ...] = ()
 # Calls below /yehu, arguments of each that are refused, and words of the reason.
 REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/note", [NOTHING, (67,), (67, 90, 1)], "expected 2 arguments"),
-    ("/note", [("67", 90), (67, None)], "expected a number"),
+    ("/note", [("G4", 90)], "NOTE: expected a MIDI note number, got a string"),
+    ("/note", [(67, None)], "VELOCITY: expected a number, got nil"),
+    *((call, [(3, 4), ("x",)], "") for call in ("/panic", "/reset", "/release")),
     ("/note", [(-1, 90), (127.5, 90), (67, -1), (67, 127.5)], "not within"),
     ("/note", [(NAN, 90.0), (67.0, NAN), (67.0, INF)], "not finite"),
     ("/note/off", [(-1,), (127.5, 0)], "not within"),
     ("/pitch", [(-1,), (127.5,)], "not within"),
-    ("/subscribe", [(9777,)], "for a port, send seconds first: 600 9777"),
+    ("/subscribe", [(9777,), (9777, 600)], "for a port, send seconds first: 600 9777"),
+    ("/subscribe", [(-1,), (-1, 7400)], "-1 s is less than nothing"),
     ("/bow", [NOTHING, (0.2,), (0.2, 0.5, 1.0)], "expected 2 arguments"),
     ("/bow", [(0.2, "x"), (NAN, 0.5), (0.2, INF)], ""),
     ("/bend", [("x",)], "expected a number"),
@@ -38,7 +41,8 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/learn", [("/bow/speed",)], "is moved by the player"),
     ("/learn", [("/playing/vibrat",)], "did you mean /playing/vibrato"),
     ("/learn", [(3,)], "expected one string"),
-    ("/learn", [("/playing/speed", "x")], "expected a number"),
+    ("/learn", [("/playing/speed", "x")], "ARGUMENT 2: expected a number"),
+    ("/articulation", [(3,), (3.0,)], "numbers are for /yehu/playing/articulation"),
     ("/unlearn", [NOTHING], "expected one string"),
     ("/bindings", [(1.0,)], "expected 0 arguments"),
     ("/preset/load", [NOTHING, (3.0,)], "expected one string"),
@@ -47,10 +51,11 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/preset/save", [("tremolo",)], "save under another name"),
     ("/preset/delete", [("tremolo",)], "comes with the program"),
     ("/preset/delete", [("nothing",)], "no preset 'nothing'"),
-    ("/preset/morph", [("ordinary", "tremolo")], "expected two names and a number"),
-    ("/preset/morph", [("ordinary", 3.0, 0.5)], "expected one string"),
+    ("/preset/morph", [("ordinary", "tremolo"), (0.5, "a", "b")], "a number from 0 to 1 (FROM TO"),
+    ("/preset/morph", [("ordinary", 3.0, 0.5)], "expected two names and a number"),
+    ("/preset/morph", [("ordinary", "tremolo", 1.5)], "AMOUNT: 1.5 is not within 0 to 1"),
     ("/preset/morph", [("ordinary", "nothing", 0.5)], "no preset 'nothing'"),
-    ("/preset/morph", [("ordinary", "tremolo", "half")], "expected a number"),
+    ("/preset/morph", [("ordinary", "tremolo", "half")], "expected two names and a number"),
     ("/preset/morph", [("ordinary", "tremolo", NAN)], "not finite"),
     ("/preset/morph", [("ordinary", "../x", 0.5)], "is not a plain name"),
     ("/bow", [(1.0,)], "expected 2 arguments"),
@@ -60,6 +65,8 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/force", [(0.5,)], "did you mean /yehu/bow/force?"),
     ("/plaing", [(0.5,)], "did you mean /yehu/playing/...?"),
     ("/reverb", [(0.5,)], "did you mean /yehu/room/level?"),
+    ("/room", [("hall",)], "a room is a preset: /yehu/preset/load hall"),
+    ("/room/load", [("hall",)], "a room is a preset: /yehu/preset/load hall"),
     ("/preset/lod", [("ordinary",)], "did you mean /yehu/preset/load?"),
     ("/load", [("ordinary",)], "did you mean /yehu/preset/load?"),
     ("/recrod/start", [("take",)], "did you mean /yehu/record/start?"),
@@ -132,7 +139,13 @@ def test_a_wrong_message_is_logged_once_for_each_address_and_few_a_minute(still,
     assert len(still.services.said) <= limits.LOGGED_ERRORS_AT_ONCE + 6
 
 
-def test_a_pitch_beyond_the_range_is_answered_with_where_the_finger_goes(still):
-    answers = [message.arguments for message in still.ask("/pitch", 30.0)]
-    assert ["/yehu/pitch", "30 is outside F4 to F6; the finger goes to 65"] in answers
-    assert still.ask("/pitch", 70.0) == []
+def test_who_plays_beyond_the_range_is_told_once_what_sounds(still):
+    for call, told in [
+        (("/pitch", 30.0), "30 is outside F4 to F6; the finger goes to 65"),
+        (("/note", 30.0, 90.0), "30 is outside F4 to F6; it sounds as 66"),
+    ]:
+        answers = [(message.address, message.arguments) for message in still.ask(*call)]
+        assert answers == [("/yehu/moved", [f"/yehu{call[0]}", told])]
+        assert still.ask(*call) == []
+    assert still.ask("/pitch", 70.0) == still.ask("/note", 70.0, 90.0) == []
+    assert still.handler.counts.errors == 0

@@ -6,6 +6,7 @@ from midi_input import receive
 
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc import context, learn_calls
+from yehu_server.playing import learn
 from yehu_server.playing.mapping import load
 
 
@@ -16,7 +17,8 @@ def _own_settings(config_home):
 
 @pytest.fixture(autouse=True)
 def _clock(monkeypatch, still_time):
-    monkeypatch.setattr(learn_calls, "time", still_time)
+    for module in (learn, learn_calls):
+        monkeypatch.setattr(module, "time", still_time)
 
 
 def turn(still, control: int, *values: int, channel: int = 0) -> None:
@@ -48,12 +50,15 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
 
 def test_a_fader_learns_the_range_that_it_moves_through(still, wire, subtests):
     """The first steps of 0 to 127 are those of a button, 0 and 1."""
-    for number, (values, source, full) in enumerate([
-        (range(9), "/fader0 (0 to 127)", 127.0),
-        ((127, 126, 100), "/fader1 (0 to 127)", 127.0),
-        ((0.0, 0.05, 0.1), "/fader2", 1.0),
-        ((0, 1, 0), "/fader3", 1.0),
-        ((1, 0), "/fader4", 1.0),
+    for number, (values, source, ends) in enumerate([
+        ((-0.9, -0.5), "/fader0 (-1 to 1)", (-1.0, 1.0)),
+        ((0.2, -0.3), "/fader1 (-1 to 1)", (-1.0, 1.0)),
+        ((900, 1000), "/fader2 (0 to 1023)", (0.0, 1023.0)),
+        (range(9), "/fader3 (0 to 127)", (0.0, 127.0)),
+        ((127, 126, 100), "/fader4 (0 to 127)", (0.0, 127.0)),
+        ((0.0, 0.05, 0.1), "/fader5", (0.0, 1.0)),
+        ((0, 1, 0), "/fader6", (0.0, 1.0)),
+        ((1, 0), "/fader7", (0.0, 1.0)),
     ]):  # fmt: skip
         with subtests.test(values=values):
             address = f"/fader{number}"
@@ -65,8 +70,47 @@ def test_a_fader_learns_the_range_that_it_moves_through(still, wire, subtests):
             assert learned[1] == source
             assert source in still.services.said[-1]
             still.pass_time(0.05)
-            still.take(wire.message(address, full))
-            assert still.value("/playing/vibrato") == 100.0
+            for end, reached in zip(ends, (0.0, 100.0), strict=True):
+                still.take(wire.message(address, end))
+                still.pass_time(0.05)
+                assert still.value("/playing/vibrato") == reached
+            still.peer.received()
+            for _ in range(2):
+                still.take(wire.message(address, 2.0 * ends[1]))
+            (told,) = still.peer.received()
+            assert told.address == "/yehu/moved"
+            assert "needs input = [LOWEST, HIGHEST] in the mapping keyboard" in told.arguments[1]
+
+
+def test_one_sweep_is_learned_once_until_the_control_was_still(still, wire):
+    for move in (
+        lambda value: turn(still, 20, round(127 * value)),
+        lambda value: still.take(wire.message("/A", value)),
+    ):
+        still.ask("/learn", "/playing/vibrato")
+        for step in range(5):
+            move(step / 8)
+        assert [message.address for message in still.peer.received()] == ["/yehu/learned"]
+        still.ask("/learn", "/playing/pressure")
+        for step in range(5, 9):
+            still.clock.now += 1.0
+            move(step / 8)
+        assert answers(still.peer.received(), "/learned") == []
+        still.clock.now += 2.0
+        for value in (0.0, 0.5):
+            move(value)
+        assert len(answers(still.peer.received(), "/learned")) == 1
+
+
+def test_moves_are_no_errors_while_what_they_teach_is_being_saved(still, wire, monkeypatch):
+    monkeypatch.setattr(still.handler.context, "run_in_background", lambda _write: None)
+    still.ask("/learn", "/playing/vibrato")
+    for step in range(9):
+        still.take(wire.message("/A", step / 8))
+    assert still.peer.received() == []
+    still.take(wire.message("/B", 0.5))
+    (error,) = answers(still.peer.received(), "/error")
+    assert "did you mean" not in error[1]
 
 
 def test_others_lose_the_parameter_only_if_asked(still):

@@ -31,7 +31,10 @@ def say(still, wire, address: str, *arguments, tags: str | None = None) -> list[
 
 def test_an_address_of_ones_own_moves_what_it_is_bound_to(own_still, wire):
     for sent, volume in ((0.0, 0.0), (63.5, 0.5), (127, 1.0), (900.0, 1.0), (-1, 0.0)):
-        assert say(own_still, wire, "/fader1", sent) == []
+        told = say(own_still, wire, "/fader1", sent)
+        assert [words.partition(";")[0] for words in told] == (
+            ["/fader1 900 is outside 0 to 127"] if sent == 900.0 else []
+        )
         assert own_still.value(VOLUME) == volume
     assert say(own_still, wire, "/1/push", tags="T") == []
     assert own_still.value("/playing/pizzicato") == 1.0

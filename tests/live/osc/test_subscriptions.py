@@ -111,6 +111,13 @@ def test_a_server_never_talks_to_itself(make_live, kit, until, host):
 # ---------------------------------------------------------------- the status
 
 
+def test_none_subscribe_for_no_time(still):
+    still.send("/subscribe", 60)
+    assert still.handler.clients.subscribers == 1
+    assert "/yehu/unsubscribed" in [message.address for message in still.ask("/subscribe", 0)]
+    assert still.handler.clients.subscribers == 0
+
+
 def test_who_subscribes_to_the_status_is_sent_it_at_once_and_then_each_change(still):
     heard = values(still.ask("/subscribe/status", 2.0))
     assert heard.pop("/yehu/subscribed") == 2.0

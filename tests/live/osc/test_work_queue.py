@@ -8,11 +8,18 @@ from hypothesis import strategies as st
 from wire import FakePeer
 
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.osc.work_queue import SLICE_NS, TURN_NS, Shares, WorkQueue
+from yehu_server.live.osc.work_queue import (
+    LONGEST_IN_ORDER_NS,
+    SLICE_NS,
+    TURN_NS,
+    Shares,
+    WorkQueue,
+)
 from yehu_server.system import clocks
 
 SHORT_NS, LONG_NS = SLICE_NS // 100, SLICE_NS + SLICE_NS // 2
 ONE, TWO, THREE = (FakePeer(port) for port in (1, 2, 3))
+BESIDE = FakePeer(4, ONE.host)
 
 
 class Done:
@@ -65,6 +72,27 @@ def test_senders_take_turns_and_what_is_long_goes_on_after_the_others(done):
         assert done.work() == order
 
 
+def test_what_one_host_sends_from_several_ports_keeps_its_order_unless_one_sends_much(done):
+    left, right = (FakePeer(port, "here") for port in (1, 2))
+    for number in range(40):
+        done.add(left, "a" if number < 39 else "b")
+        done.add(right, "a" if number < 39 else "c")
+    assert done.work() == "1a 2a " * 39 + "1b 2c"
+    done.steps.clear()
+    for much, soon in [(["A"] * 4000, 1), (["A" * 100], LONGEST_IN_ORDER_NS // LONG_NS + 1)]:
+        for letters in much:
+            done.add(left, letters)
+        done.add(right, "b")
+        done.add(left, "c")
+        done.work()
+        assert done.steps.index("2b") <= soon
+        assert done.steps[-1] == "1c"
+        done.steps.clear()
+    for peer, letters in ((left, "a"), (right, "b"), (left, "c")):
+        done.add(peer, letters)
+    assert done.work() == "1a 2b 1c"
+
+
 def test_no_more_is_done_at_a_time_than_a_turn_takes(done):
     for port in range(8):
         done.add(FakePeer(port), "ABC")
@@ -87,7 +115,7 @@ def test_who_sends_little_is_served_soon_whatever_others_have_waiting(done, size
         assert ended <= 2 + 2  # one turn of each other
 
 
-@given(st.lists(st.tuples(st.sampled_from((ONE, TWO, THREE)), st.text("abA", max_size=3))))
+@given(st.lists(st.tuples(st.sampled_from((ONE, TWO, BESIDE)), st.text("abA", max_size=9))))
 def test_what_one_sends_keeps_its_order_whoever_else_sends(said):
     with pytest.MonkeyPatch.context() as patch:
         done = Done()
@@ -95,7 +123,7 @@ def test_what_one_sends_keeps_its_order_whoever_else_sends(said):
         for peer, letters in said:
             done.add(peer, letters)
         done.work()
-    for peer in (ONE, TWO, THREE):
+    for peer in (ONE, TWO, BESIDE):
         letters = "".join(step[1] for step in done.steps if step[0] == str(peer.port))
         assert letters == "".join(text for one, text in said if one == peer)
         assert done.queue.held(peer) == 0

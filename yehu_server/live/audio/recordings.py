@@ -147,6 +147,7 @@ class Recorder:
 
 
 ENDINGS = (".wav", ".flac")
+OTHER_FORMATS = (".mp3", ".ogg", ".opus", ".m4a", ".aac", ".aif", ".aiff", ".caf", ".w64")
 
 
 class Recordings:
@@ -176,12 +177,15 @@ class Recordings:
         )
 
     def start(self, name: str) -> str:
-        """Record to a file of a plain name in the folder; return its name.
+        """Record to a file of a plain name in the folder; return its path.
 
-        Raises OutputError where a requested recording runs, the name is not plain or already taken,
-        too many were begun of late or are there, or the file cannot be written.
+        Raises OutputError where a requested recording runs, the name is not plain, already taken or
+        of another format, too many were begun of late or are there, or the file cannot be written.
         """
-        target = path_inside(self._folder, name, "" if Path(name).suffix in ENDINGS else ".wav")
+        ending = Path(name).suffix
+        if ending.lower() in OTHER_FORMATS:
+            raise OutputError(f"{name}: recordings are {' or '.join(ENDINGS)}")
+        target = path_inside(self._folder, name, "" if ending in ENDINGS else ".wav")
         if self._requested is not None and self._requested.is_running:
             raise OutputError(f"already recording {self._requested.target.name}")
         if not self._begins.takes(time.monotonic()):
@@ -198,10 +202,10 @@ class Recordings:
             raise OutputError(f"{self._folder}: {error_reason(error)}") from error
         self._requested = Recorder(self._tape, target, self._tape.frame, self._on_message)
         self._on_message(f"recording {target}")
-        return target.name
+        return str(target)
 
     def stop(self) -> str:
-        """End what `start` began; return the file's name. OutputError: it runs no more."""
+        """End what `start` began; return the file's path. OutputError: it runs no more."""
         recorder, self._requested = self._requested, None
         if recorder is None:
             more = "; --record ends with the server" if self._everything is not None else ""
@@ -210,7 +214,7 @@ class Recordings:
         if recorder.failure:
             raise OutputError(f"the recording has ended: {recorder.failure}")
         self._report(recorder)
-        return recorder.target.name
+        return str(recorder.target)
 
     def close(self) -> None:
         """End all recordings at the last frame played."""

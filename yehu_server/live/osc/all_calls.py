@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 
 from yehu_server.errors import RefusedError
-from yehu_server.live.osc.call import Argument, Call, CountError, Request
+from yehu_server.live.osc.call import Argument, Call, CountError, KindError, Request
 from yehu_server.live.osc.context import Act, CallContext, GroupCalls
 from yehu_server.live.osc.learn_calls import LearnCalls
 from yehu_server.live.osc.playing_calls import PartCalls
@@ -43,12 +43,17 @@ def acts(group: str, context: CallContext) -> dict[str, Act]:
 
 
 def _carry_out(row: Call, carrier: GroupCalls, request: Request) -> None:
-    """Carry out a call; of another number of arguments the error names those that it has."""
+    """Carry out a call; the error of wrong arguments names them."""
     try:
         row.act(carrier, request)
     except CountError as error:
         names = " ".join(argument.name.upper() for argument in row.arguments)
         raise RefusedError(f"{error} ({names})" if names else str(error)) from None
+    except KindError as error:
+        own = row.arguments[error.place : error.place + 1] or (
+            Argument(f"argument {error.place + 1}"),
+        )
+        raise RefusedError(f"{own[0].name.upper()}: {own[0].wanted}, got {error.given}") from None
 
 
 def preset_calls(names: tuple[str, ...], group: str = FIRST) -> list[Call]:
@@ -75,7 +80,7 @@ def own_calls(mapping: Mapping, group: str = FIRST, below: str = "") -> list[Cal
             below + bind.source,
             f"Moves {PREFIX}{group}{bind.target}, by the mapping {mapping.name}.",
             (Argument("place", lo=min(bind.input_range), hi=max(bind.input_range)),),
-            partial(PartCalls.move, address=bind.source),
+            partial(PartCalls.move, bind=bind),
         )
         for bind in mapping.binds
         if is_address(bind.source)

@@ -14,6 +14,14 @@ class CountError(RefusedError):
     """Another number of arguments than a call has."""
 
 
+class KindError(RefusedError):
+    """An argument at a place, from 0, that is no number."""
+
+    def __init__(self, place: int, given: str) -> None:
+        super().__init__(f"expected a number, got {given}")
+        self.place, self.given = place, given
+
+
 @dataclass(frozen=True)
 class Request:
     """A message to carry out: its arguments, its sender, and the frame at which it takes effect."""
@@ -28,26 +36,26 @@ class Request:
         if not self.peer.takes_more:
             raise RefusedError("too many answers to you are waiting")
 
-    def numbers(self, least: int, most: int | None = None) -> list[float]:
-        """The arguments as finite numbers.
+    def numbers(self, least: int, most: int | None = None, *, after: int = 0) -> list[float]:
+        """The arguments `after` so many as finite numbers.
 
         Raises CountError where their count is not within `least` to `most` (by default `least`),
-        RefusedError where one is none.
+        KindError where one is no number, RefusedError where one is not finite.
         """
         most = least if most is None else most
         if least == 0 and list(self.arguments) == [None]:  # so OSCQuery clients send none
             return []
-        count = len(self.arguments)
+        count = len(self.arguments) - after
         if not least <= count <= most:
             wanted = f"{least}" if least == most else f"{least} to {most}"
             plural = "" if wanted == "1" else "s"
             raise CountError(f"expected {wanted} argument{plural}, got {count}")
-        return [_number(argument) for argument in self.arguments]
+        return [_number(self.arguments[place], place) for place in range(after, after + count)]
 
     @property
     def is_let_go(self) -> bool:
-        """Whether it is what a momentary button sends as it is let go: 0 or F."""
-        return list(self.arguments) == [0]
+        """Whether it is what a momentary button sends as it is let go: 0 or F; see `numbers`."""
+        return self.numbers(0, 1) == [0.0]
 
     def word(self) -> str:
         """The only argument, a string; raises CountError where there is anything else."""
@@ -61,14 +69,14 @@ class Request:
         Raises RefusedError where there is anything else.
         """
         word = replace(self, arguments=self.arguments[:1]).word()
-        given = replace(self, arguments=self.arguments[1:]).numbers(0, most)
+        given = self.numbers(0, most, after=1)
         return [word, *(number != 0.0 for number in given), *[False] * (most - len(given))]
 
 
-def _number(argument: Any) -> float:
-    """A number from a float, an int, T or F; raises RefusedError."""
+def _number(argument: Any, place: int) -> float:
+    """A number from a float, an int, T or F; raises KindError, or RefusedError."""
     if not isinstance(argument, int | float):
-        raise RefusedError(f"expected a number, got {_kind(argument)}")
+        raise KindError(place, _kind(argument))
     try:
         number = float(argument)
     except OverflowError:
@@ -81,6 +89,9 @@ def _number(argument: Any) -> float:
 def _kind(argument: Any) -> str:
     kinds = {str: "a string", bytes: "a blob", type(None): "nil", list: "an array"}
     return kinds.get(type(argument), f"a {type(argument).__name__}")
+
+
+MIDI_NOTE = "MIDI note"
 
 
 @dataclass(frozen=True)
@@ -96,6 +107,11 @@ class Argument:
     hi: float | None = None
     unit: str = "1"
     choices: tuple[str, ...] = ()
+
+    @property
+    def wanted(self) -> str:
+        """What it has to be, for an error."""
+        return f"expected a {self.unit} number" if self.unit == MIDI_NOTE else "expected a number"
 
 
 @dataclass(frozen=True)

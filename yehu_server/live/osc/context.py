@@ -48,6 +48,8 @@ class CallContext:
     counts: Counts = field(default_factory=Counts)
     writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
     wrong_addresses: set[str] = field(default_factory=set)  # whose errors were logged
+    # Who was told, and at which address, that its values are outside the range.
+    told: set[tuple[Peer, str]] = field(default_factory=set)
     unlogged: int = 0  # errors since the last that was logged
     logged_errors: TokenBucket = field(
         default_factory=lambda: TokenBucket(

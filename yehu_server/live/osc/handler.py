@@ -29,7 +29,7 @@ log = logging.getLogger(__name__)
 
 DUE_AT_ONCE = 512  # scheduled messages, which then take turns with others
 LONGEST_WAIT_S = 0.5
-FAR_S = 60.0  # a time tag so far ahead is told
+FAR_S, LONGEST_AHEAD_S = 60.0, 3600.0  # a time tag so far ahead is told, or refused
 MAX_FAR = 64  # hosts that are told of, each once
 
 
@@ -50,7 +50,9 @@ class OscHandler:
             self._acts |= acts(group, context)
         self.addresses = tuple(PREFIX + address for address in self._acts)
         # Messages of another server that was made to send us its values.
-        self._answers: dict[str, Act] = {f"{PREFIX}/error": lambda _call: None}
+        self._answers: dict[str, Act] = {
+            f"{PREFIX}/{answer}": lambda _call: None for answer in ("error", "moved")
+        }
         for group in self._groups:
             self._answers[f"{PREFIX}{group}/subscribed"] = lambda call: self.clients.mute(
                 call.peer, within_an_hour(call.numbers(1)[0])
@@ -105,6 +107,10 @@ class OscHandler:
     def _keep(self, message: Message, peer: Peer) -> None:
         """Keep a message until its time; tell of a sender whose clock is far from this one."""
         ahead_s = (message.due_s or 0.0) - time.time()
+        if ahead_s > LONGEST_AHEAD_S:
+            reason = f"its time is {ahead_s:.0f} s ahead, more than an hour: is the clock right?"
+            self.context.send_error(peer, message.address, reason)
+            return
         if ahead_s > FAR_S and peer.host not in self._far and len(self._far) < MAX_FAR:
             self._far.add(peer.host)
             log.warning(
@@ -179,7 +185,7 @@ class OscHandler:
         players = self._players
         if group:
             players = players[part_of(group) :][:1] if group in self._groups else ()
-        hearing = [player for player in players if player.learning.waits and is_own(plain)]
+        hearing = [player for player in players if is_own(plain) and player.learning.expects(plain)]
         move = own.get(address)
 
         def hear(call: Request) -> None:

@@ -81,6 +81,7 @@ def _either(words: list[str]) -> Piece:
     }
 
 
+ROOM_GUESSES = ("/room", "/room/load", "/room/name", "/room/preset", "/room/type")
 NAMES = [row.name for row in STATUS]
 PART_NAMES = [row.name for row in PART_STATUS]
 
@@ -118,9 +119,9 @@ def parameter_of(address: str) -> str:
 def near(address: str, parts: int, known: Iterable[str]) -> str:
     """The reason for an unknown address, with a similar one of those known, if there is one."""
     if not address.startswith(PREFIX + "/"):
-        hint = near_address(
-            PREFIX + address[: limits.PATTERN], [PREFIX + one for one in known], 0.8
-        )
+        bare = address[: limits.PATTERN]
+        least = (len(PREFIX) + 0.8 * len(bare)) / (len(PREFIX) + len(bare))  # of `bare` 0.8
+        hint = near_address(PREFIX + bare, [PREFIX + one for one in known], least)
         return f"unknown address (all but learned ones begin with {PREFIX}/){hint}"
     group, own = part_addresses.split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
     try:
@@ -130,6 +131,8 @@ def near(address: str, parts: int, known: Iterable[str]) -> str:
             parameter_of(own)
     except YehuError as error:
         return str(error)
+    if own in ROOM_GUESSES:
+        return f"unknown address; a room is a preset: {PREFIX}/preset/load hall"
     of_group = [PREFIX + one for one in known if part_addresses.split_group(one)[0] == group]
     return f"unknown address{near_address(address, of_group, 0.75, prefix=PREFIX + group)}"
 

@@ -3,14 +3,17 @@
 from collections.abc import Sequence
 
 from yehu_server.errors import RefusedError
-from yehu_server.live.osc.call import Argument, Request, like, osc_call
+from yehu_server.live import traffic_limits as limits
+from yehu_server.live.osc.call import MIDI_NOTE, Argument, Request, like, osc_call
 from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.packets import pack
+from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of
 from yehu_server.params.spec import Param
-from yehu_server.params.table import TABLE, UNIT
+from yehu_server.params.table import PREFIX, TABLE, UNIT
+from yehu_server.playing.bind import Bind
 from yehu_server.playing.part_state import within_midi
 from yehu_server.playing.player import Player
 from yehu_server.playing.stringing import range_text
@@ -18,7 +21,7 @@ from yehu_server.playing.stringing import range_text
 SUBSCRIBED_S, LONGEST_SUBSCRIPTION_S = 60.0, 3600.0
 CHOSEN = "/playing/articulation"
 
-NOTE = Argument("note", lo=0.0, hi=127.0, unit="MIDI note")
+NOTE = Argument("note", lo=0.0, hi=127.0, unit=MIDI_NOTE)
 VELOCITY = Argument("velocity", lo=0.0, hi=127.0)
 ARTICULATION = Argument("articulation", "s", choices=tuple(one.name for one in ARTICULATIONS))
 SECONDS = Argument("seconds", lo=0.0, hi=LONGEST_SUBSCRIPTION_S, unit="s")
@@ -57,9 +60,18 @@ class PartCalls(GroupCalls):
         self._set(call, param.address, param.from_unit(unit))
         self._echo(call.peer, [param.address + UNIT])
 
-    def move(self, call: Request, address: str) -> None:
+    def move(self, call: Request, bind: Bind) -> None:
         """Move what the mapping binds to an address of the user's own."""
-        self._player.move(address, call.numbers(1)[0], frame=call.frame)
+        (value,) = call.numbers(1)
+        self._player.move(bind.source, value, frame=call.frame)
+        lo, hi = sorted(bind.input_range)
+        margin = (hi - lo) / 100.0  # faders overshoot by rounding
+        if not lo - margin <= value <= hi + margin:
+            name = self._player.mapping.name
+            what = f"another range needs input = [LOWEST, HIGHEST] in the mapping {name}"
+            self._tell_once(
+                call.peer, bind.source, f"{value:g} is outside {lo:g} to {hi:g}; {what}"
+            )
 
     @osc_call("/params", "Sends all parameters: value, range, default, unit, meaning.")
     def _send_params(self, call: Request) -> None:
@@ -80,6 +92,23 @@ class PartCalls(GroupCalls):
             self._player.key_off(note, frame=call.frame)
         else:
             self._player.key_on(note, velocity, frame=call.frame)
+            tuned, played = self._player.pitches(note)
+            if played != tuned:
+                what = "it does not sound" if played is None else f"it sounds as {played:g}"
+                self._tell_moved(call.peer, "/note", note, what)
+
+    def _tell_moved(self, peer: Peer, address: str, note: float, what: str) -> None:
+        outside = f"{note:g} is outside {range_text(self._player.notes)}; {what}"
+        self._tell_once(peer, self._prefix + address, outside)
+
+    def _tell_once(self, peer: Peer, address: str, what: str) -> None:
+        """Send a peer, once for each address, what becomes of a value outside the range."""
+        told = self._context.told
+        if (peer, address) not in told:
+            if len(told) >= limits.PEERS:
+                told.clear()
+            told.add((peer, address))
+            self._clients.send(peer, pack(f"{PREFIX}/moved", address, what))
 
     @osc_call("/note/off", "Ends a note.", NOTE)
     def _note_off(self, call: Request) -> None:
@@ -90,8 +119,7 @@ class PartCalls(GroupCalls):
         pitch = within_midi("pitch", call.numbers(1)[0])
         accepted = self._player.slide(pitch, frame=call.frame)
         if accepted != pitch:
-            notes = range_text(self._player.notes)
-            raise RefusedError(f"{pitch:g} is outside {notes}; the finger goes to {accepted:g}")
+            self._tell_moved(call.peer, "/pitch", pitch, f"the finger goes to {accepted:g}")
 
     @osc_call(
         "/bow",
@@ -116,6 +144,10 @@ class PartCalls(GroupCalls):
 
     @osc_call("/articulation", "Chooses what both hands do in the next notes.", ARTICULATION)
     def _articulation(self, call: Request) -> None:
+        if len(call.arguments) == 1 and isinstance(call.arguments[0], int | float):
+            raise RefusedError(
+                f"expected a name, such as spiccato; numbers are for {PREFIX}{CHOSEN}"
+            )
         number = number_of(call.word())
         self._player.set(CHOSEN, number, frame=call.frame)
         self._echo(call.peer, [CHOSEN])
@@ -173,13 +205,19 @@ class PartCalls(GroupCalls):
 
     def _subscribe_to(self, form: str, call: Request) -> None:
         numbers = call.numbers(0, 2)
-        if len(numbers) == 1 and numbers[0] > LONGEST_SUBSCRIPTION_S:
+        seconds = numbers[0] if numbers else SUBSCRIBED_S
+        if seconds > LONGEST_SUBSCRIPTION_S:
             raise RefusedError(
-                f"{numbers[0]:g} s is more than an hour; for a port, send seconds first: "
-                f"600 {numbers[0]:g}"
+                f"{seconds:g} s is more than an hour; for a port, send seconds first: "
+                f"600 {seconds:g}"
             )
-        seconds = within_an_hour(numbers[0] if numbers else SUBSCRIBED_S)
+        if seconds < 0.0:
+            raise RefusedError(f"{seconds:g} s is less than nothing")
         peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer
+        if seconds == 0.0:
+            self._clients.unsubscribe(peer)
+            peer.send(pack(f"{self._prefix}/unsubscribed"))
+            return
         if not self._clients.subscribe(peer, seconds, form, self._group, sender=call.peer):
             raise RefusedError("there are too many subscribers")
         peer.send(pack(f"{self._prefix}/subscribed", seconds))

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 from yehu_server.errors import PresetError, shortened
-from yehu_server.live.osc.call import NAME, Argument, Request, osc_call
+from yehu_server.live.osc.call import NAME, Argument, CountError, Request, osc_call
 from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.part_addresses import OF_PARTS
 from yehu_server.params.preset_file import Preset, morph
@@ -51,10 +51,12 @@ class PresetCalls(GroupCalls):
         reads_files=True,
     )
     def _morph(self, call: Request) -> None:
-        if len(call.arguments) != 3:
-            raise PresetError("expected two names and a number from 0 to 1")
+        if [isinstance(each, str) for each in call.arguments] != [True, True, False]:
+            raise CountError("expected two names and a number from 0 to 1")
+        (amount,) = call.numbers(1, after=2)
+        if not 0.0 <= amount <= 1.0:
+            raise PresetError(f"AMOUNT: {amount:g} is not within 0 to 1")
         one, other = self._named(call, 0), self._named(call, 1)
-        (amount,) = replace(call, arguments=call.arguments[2:]).numbers(1)
         self._set(call, "/preset/morph", morph(one, other, amount))
 
     def _named(self, call: Request, place: int) -> Preset:

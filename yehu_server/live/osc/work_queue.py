@@ -1,7 +1,8 @@
 """A bounded queue of all senders' work, with a share for each.
 
-A sender's own work is done in order; senders take turns, each for a slice of time. So one that
-sends little is served within a few slices, however much others have waiting.
+What the senders of a host send is done in order of arrival, so that a patch may play from several
+sockets. But hosts take turns, each for a slice of time, and so does a sender that sends much: one
+that sends little is served within a few slices, however much others have waiting.
 """
 
 import contextlib
@@ -14,6 +15,8 @@ from yehu_server.live.osc.peers import Peer
 from yehu_server.system import clocks
 
 TURN_NS, SLICE_NS = 2_000_000, 500_000  # of one call of `work`, and of one sender's turn in it
+# Of a sender: pieces of work that wait, and what those took, before it gets turns of its own.
+MOST_IN_ORDER, LONGEST_IN_ORDER_NS = 64, 32 * SLICE_NS
 DONE = object()
 
 
@@ -53,7 +56,11 @@ class WorkQueue:
 
     def __init__(self, most_bytes: int = limits.WAITING) -> None:
         self._shares = Shares(most_bytes)
-        self._works: OrderedDict[Peer, deque[tuple[Iterator[None], int]]] = OrderedDict()
+        self._works: dict[Peer, deque[tuple[Iterator[None], int]]] = {}
+        self._worked_ns: dict[Peer, int] = {}  # for those who have work, since they had none
+        self._crowding: set[Peer] = set()  # those with turns of their own, until they have no work
+        # Of each host, and of each of those: whose work is next.
+        self._turns: OrderedDict[Peer | str, deque[Peer]] = OrderedDict()
         self.held = self._shares.held
 
     def __bool__(self) -> bool:
@@ -66,28 +73,58 @@ class WorkQueue:
         size += limits.OVERHEAD
         if not self._shares.take(peer, size, always=always):
             return False
-        self._works.setdefault(peer, deque()).append((steps, size))
+        works = self._works.setdefault(peer, deque())
+        works.append((steps, size))
+        self._turns.setdefault(self._key(peer), deque()).append(peer)
+        if len(works) > MOST_IN_ORDER:
+            self._separate(peer)
         return True
+
+    def _key(self, peer: Peer) -> Peer | str:
+        return peer if peer in self._crowding else peer.host
+
+    def _separate(self, peer: Peer) -> None:
+        """Give a sender turns of its own; those among its host's are passed over."""
+        if peer not in self._crowding:
+            self._crowding.add(peer)
+            self._turns[peer] = deque([peer] * len(self._works[peer]))
 
     def work(self) -> None:
         """Do what waits, for up to TURN_NS; work that fails is gone."""
         now = clocks.monotonic_ns()
         until = now + TURN_NS
-        while self._works and now < until:
-            peer, works = next(iter(self._works.items()))
-            self._works.move_to_end(peer)
+        while self._turns and now < until:
+            key, order = next(iter(self._turns.items()))
+            self._turns.move_to_end(key)
             slice_ends = now + SLICE_NS
-            while works and now < slice_ends:
-                (steps, size), rest = works[0], DONE
-                try:
-                    rest = next(steps, DONE)
-                finally:
-                    if rest is DONE:
-                        works.popleft()
-                        self._shares.give_back(peer, size)
-                        if not works:
-                            del self._works[peer]
-                now = clocks.monotonic_ns()
+            while order and now < slice_ends:
+                peer = order[0]
+                if peer in self._works and self._key(peer) == key:
+                    now = self._step(peer, order, now)
+                else:  # it has turns of its own, or had
+                    order.popleft()
+            if not order:
+                del self._turns[key]
+
+    def _step(self, peer: Peer, order: deque[Peer], began_ns: int) -> int:
+        """Do a step of a sender's work; return the time (ns)."""
+        works, rest = self._works[peer], DONE
+        steps, size = works[0]
+        try:
+            rest = next(steps, DONE)
+        finally:
+            now = clocks.monotonic_ns()
+            self._worked_ns[peer] = self._worked_ns.get(peer, 0) + now - began_ns
+            if rest is DONE:
+                works.popleft()
+                order.popleft()
+                self._shares.give_back(peer, size)
+                if not works:
+                    del self._works[peer], self._worked_ns[peer]
+                    self._crowding.discard(peer)
+            if self._worked_ns.get(peer, 0) > LONGEST_IN_ORDER_NS:
+                self._separate(peer)
+        return now
 
 
 class Calls:

@@ -4,6 +4,7 @@ Only OSC messages in a WebSocket change anything. No path of a request is used a
 """
 
 import asyncio
+import errno
 import ipaddress
 import json
 import logging
@@ -24,6 +25,7 @@ from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Address, Allowed, format_address, plain
 from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.context import CallContext
+from yehu_server.live.osc.listening_sockets import BESIDE
 from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.status import PART_STATUS, STATUS, Kind
@@ -40,6 +42,7 @@ log = logging.getLogger(__name__)
 HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-store"}
 PARAMETERS = "parameters.html"
 NAME = "yehu-server"  # in HOST_INFO
+OSCQUERY = "OSCQuery"
 PANEL = """
 <li><a href="/panel/">The instrument</a></li>"""
 PAGE = """<!DOCTYPE html>
@@ -79,7 +82,7 @@ class WebServer:
         self._sockets = WebSockets(osc, context.clients, self.traffic, self._parts)
         self._metrics = Metrics(context.status, self._parts)
         self._names = own_names()
-        self._listening = listen("OSCQuery", *options.address)
+        self._listening = listen(OSCQUERY, *options.address)
         self.host, self.port = self._listening.getsockname()[:2]
         self._connections = Connections()
         self._thread = LoopThread(
@@ -196,7 +199,10 @@ def listen(what: str, host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
     except OSError as error:
         where = format_address(host, port)
-        raise DeviceError(f"{what}: cannot listen at {where}: {error_reason(error)}") from error
+        is_other = what == OSCQUERY and error.errno == errno.EADDRINUSE
+        beside = f"; play beside it: {BESIDE}" * is_other
+        reason = f"{error_reason(error)}{beside}"
+        raise DeviceError(f"{what}: cannot listen at {where}: {reason}") from error
 
 
 def _html(text: str) -> web.Response:

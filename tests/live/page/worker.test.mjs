@@ -11,10 +11,7 @@ const text = empty
   .replace('VERSION = ""', 'VERSION = "1"')
   .replace("FILES = []", 'FILES = [["./", "sha256-x"]]');
 
-function started(
-  open,
-  { code = text, caches = {}, skipWaiting = undefined } = {},
-) {
+function started(open, { code = text, caches = {}, skipWaiting = undefined } = {}) {
   const listeners = {};
   const requests = [];
   runInNewContext(code, {
@@ -46,9 +43,7 @@ test("only files of this version are kept", async () => {
     addAll: async () => {},
   }));
   listeners.install({ waitUntil: () => {} });
-  assert.deepEqual(requests, [
-    { url: "./", cache: "no-cache", integrity: "sha256-x" },
-  ]);
+  assert.deepEqual(requests, [{ url: "./", cache: "no-cache", integrity: "sha256-x" }]);
 });
 
 test("where nothing can be kept or found all comes from the network", async () => {
@@ -60,28 +55,18 @@ test("where nothing can be kept or found all comes from the network", async () =
     async () => ({ match: fails }),
     async () => ({ match: async () => {} }),
   ])
-    assert.equal(
-      await answer(started(open), `${ORIGIN}/x`),
-      `from the network: ${ORIGIN}/x`,
-    );
+    assert.equal(await answer(started(open), `${ORIGIN}/x`), `from the network: ${ORIGIN}/x`);
   const kept = started(async () => ({ match: async () => "kept" }));
   assert.equal(await answer(kept, `${ORIGIN}/x`), "kept");
 });
 
 test("a new version forgets older ones of its own folder, and no other page's", async () => {
   const names = [];
-  const opened = async (name) =>
-    void names.push(name) ?? { addAll: async () => {} };
+  const opened = async (name) => void names.push(name) ?? { addAll: async () => {} };
   started(opened).listeners.install({ waitUntil: () => {} });
   const [own] = names;
   const other = own.replace("/yehu/", "/yehu/beside/");
-  const keys = [
-    own,
-    own.replace(/1$/, "0"),
-    other,
-    other.replace(/1$/, "0"),
-    "theirs",
-  ];
+  const keys = [own, own.replace(/1$/, "0"), other, other.replace(/1$/, "0"), "theirs"];
   const deleted = [];
   const caches = {
     keys: async () => keys,

@@ -10,7 +10,9 @@ from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.stage.image_sources import EARS
 from yehu_server.errors import ScoreError
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import section_size
 from yehu_server.scores.chosen_parts import MELODIC
+from yehu_server.scores.chords import without_lower_notes
 from yehu_server.scores.phrasing import is_fingered, phrased
 from yehu_server.scores.score import Score, concatenate, notes_of
 
@@ -24,15 +26,25 @@ class Part:
     score: Score  # shaped already (``scores.phrasing``)
     playing: PlayingOptions = field(default_factory=PlayingOptions)
     name: str = ""
+    lower_notes: int = 0  # of chords, which the score was without
 
     @classmethod
     def shaped(cls, scores: Sequence[Score], playing: PlayingOptions, name: str = "") -> Part:
-        """The part of a player who plays scores one after another, and shapes them."""
+        """The part of a player who plays scores one after another, and shapes them.
+
+        Of a chord one player has the highest note; a section shares its notes.
+        """
+        lower = 0
+        if section_size(playing) == 1:
+            usual = range(16) if playing.mapping.mpe else MELODIC
+            channels = usual if playing.channels is None else playing.channels
+            single = [without_lower_notes(each, channels) for each in scores]
+            scores, lower = [score for score, _ in single], sum(left for _, left in single)
         score = concatenate([phrased(each, playing) for each in scores])
         if is_fingered(score, playing):
             still = ("/playing/left_hand", 0.0)
             playing = replace(playing, start=(*playing.start, still))
-        return cls(score, playing, name or score.name)
+        return cls(score, playing, name or score.name, lower)
 
     def check_is_heard(self) -> None:
         """Check that one of the score's notes is played; raises ScoreError where it has some."""

@@ -84,7 +84,7 @@ def test_each_channel_but_percussion_is_a_yehu_with_a_place_and_chance_of_its_ow
     assert summary["lost_states"] == 0
 
 
-def test_tracks_that_sound_together_on_one_channel_are_a_yehu_each(play, command, tmp_path):
+def test_tracks_that_sound_together_on_one_channel_are_a_yehu_each(play, tmp_path):
     drums = notes((0.0, 0.1, 36, 99), (0.5, 0.1, 38, 99), channel=10)
     shared = tracks_file(tmp_path / "shared.mid", line(1, 67), line(1, 72), drums)
     summary, _, _ = play(shared, "--ensemble", "--tail", 0)

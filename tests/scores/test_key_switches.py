@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 from midi_files import midi_file, notes
 
+from yehu_server.errors import ScoreError
 from yehu_server.playing.mapping import load
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
+from yehu_server.rendering.to_files import render
 from yehu_server.scores.reading import ReadOptions, part_of, read_any
 from yehu_server.scores.score import Score, notes_of
 
@@ -88,3 +91,20 @@ def test_other_mappings_and_percussion_have_notes_there(read):
     assert len(notes_of(read(*switches(10), *tune()))) == len(TUNE) + len(CHOSEN)
     drummer = replace(PLAYING, channels=frozenset({0, 9}))
     assert len(notes_of(read(*switches(10), *tune(), playing=drummer))) == len(TUNE)
+
+
+def test_keys_of_another_library_far_below_are_left_out_and_the_tune_moves(read):
+    """Those of a mapping are read before."""
+    skips = replace(PLAYING, mapping=load("keyboard"), policy=RangePolicy.SKIP)
+    score = read(*switches(), *tune(12), playing=skips)
+    assert [note.key for note in notes_of(score)] == [key for *_, key in TUNE]
+    assert score.remarks[0] == "notes far below the tune left out, as key switches: 2"
+    assert "an octave up" in score.remarks[1]
+
+
+def test_a_rendering_without_a_note_is_an_error_and_writes_nothing(read, tmp_path):
+    clamps = replace(PLAYING, mapping=load("keyboard"), policy=RangePolicy.CLAMP)
+    part = Part.shaped([read(*tune(36), playing=clamps)], replace(clamps, policy=RangePolicy.SKIP))
+    with pytest.raises(ScoreError, match="tune: none of its notes is played"):
+        render([part], tmp_path / "out.wav", Options(rate=22050, tail_s=0.0))
+    assert not (tmp_path / "out.wav").exists()

@@ -11,10 +11,10 @@ from yehu_server.core.stage.image_sources import EARS
 from yehu_server.errors import ScoreError
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import section_size
-from yehu_server.scores.chosen_parts import MELODIC
 from yehu_server.scores.chords import without_lower_notes
+from yehu_server.scores.chosen_parts import MELODIC
 from yehu_server.scores.phrasing import is_fingered, phrased
-from yehu_server.scores.score import Score, concatenate, notes_of
+from yehu_server.scores.score import Score, concatenate, notes_of, says_mpe
 
 BLOCK = 1 << 14  # frames; the sound does not depend on it
 
@@ -36,9 +36,7 @@ class Part:
         """
         lower = 0
         if section_size(playing) == 1:
-            usual = range(16) if playing.mapping.mpe else MELODIC
-            channels = usual if playing.channels is None else playing.channels
-            single = [without_lower_notes(each, channels) for each in scores]
+            single = [without_lower_notes(each, _channels(each, playing)) for each in scores]
             scores, lower = [score for score, _ in single], sum(left for _, left in single)
         score = concatenate([phrased(each, playing) for each in scores])
         if is_fingered(score, playing):
@@ -59,6 +57,13 @@ class Part:
                 "only if it is chosen"
             )
         raise ScoreError(f"{self.score.name}: {unheard_line(chosen, found)}")
+
+
+def _channels(score: Score, playing: PlayingOptions) -> Collection[int]:
+    """The channels of a score that a player plays."""
+    if playing.channels is not None:
+        return playing.channels
+    return range(16) if playing.mapping.mpe or says_mpe(score) else MELODIC
 
 
 def unheard_line(chosen: Collection[int], found: Sequence[int]) -> str:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
-from yehu_server.scores.score import Score, ScoreNote, notes_of
+from yehu_server.scores.score import Score, ScoreNote, notes_of, without_notes
 
 STRUM_S = 0.03  # from the first to the last note of a chord, as of sections
 
@@ -25,13 +24,7 @@ def without_lower_notes(score: Score, channels: Collection[int]) -> tuple[Score,
         else:
             low, top = sorted((note, top), key=lambda each: each.key)
             lower.append(low)
-    if not lower:
-        return score, 0
-    left = {note.begins for note in lower}
-    begun = {note.begins for note in notes_of(score)}
-    left |= {note.ends for note in lower} - begun  # where the key is struck again, it ends nothing
-    events = (event for number, event in enumerate(score.events) if number not in left)
-    return replace(score, events=tuple(events)), len(lower)
+    return without_notes(score, lower), len(lower)
 
 
 def _sound_together(one: ScoreNote, other: ScoreNote) -> bool:

@@ -18,7 +18,7 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
-from yehu_server.scores.key_switches import with_key_switches
+from yehu_server.scores.key_switches import with_key_switches, without_low_keys
 from yehu_server.scores.octaves import NoteSpan
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import (
@@ -139,6 +139,7 @@ class ReadOptions:
     # Whether all are played where none is named: else the one that carries the tune.
     all_parts: bool = False
     in_range: bool = True  # whether parts are moved by octaves as a whole, to fit the instrument
+    leaves_low_keys: bool = False  # whether keys far below a tune of a MIDI file are left out
     is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
     within: NoteRange = YEHU  # the notes of the instrument
     channels: Collection[int] | None = None  # of a MIDI file that are played: all but percussion
@@ -152,7 +153,8 @@ class ReadOptions:
         return cls(
             parts,
             all_parts=all_parts,
-            in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
+            in_range=playing.policy is not RangePolicy.CLAMP and playing.tuning.has_octaves,
+            leaves_low_keys=playing.policy is RangePolicy.SKIP,
             is_mpe=playing.mapping.mpe,
             within=range_of(playing.quantities),
             channels=playing.channels,
@@ -238,6 +240,8 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
     played = chosen_parts.MELODIC if options.channels is None else options.channels
     played = range(16) if is_mpe else {*chosen_parts.MELODIC, *played}
     score = with_key_switches(score, options.key_switches, played)
+    if options.leaves_low_keys and not is_mpe:
+        score = without_low_keys(score, played, options.within)
     tune = score if is_mpe else chosen_parts.default_midi_part(score)
     delays = midi_delays(score, tune)
     if options.parts:

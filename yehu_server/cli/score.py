@@ -84,14 +84,17 @@ def add_to(commands: Any) -> None:
 
 def _show(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.stringing import notes_of
-    from yehu_server.scores.transcription import read_as_written
+    from yehu_server.scores.transcription import UNPLAYED, read_as_written
     from yehu_server.scores.written.notated import times
     from yehu_server.scores.written.text import fields_of, lines_of
 
     written, left = read_as_written(arguments.score, arguments.song)
-    if left:
-        line = ", ".join(times(name, count) for name, count in sorted(left.items()))
-        written = replace(written, warnings=(*written.warnings, f"without {line}"))
+    unplayed = {name: left.pop(name) for name in UNPLAYED if name in left}
+    what = {"not played": unplayed, "played, but not shown here": left}
+    for how, names in what.items():
+        line = ", ".join(times(name, count) for name, count in sorted(names.items()))
+        if line:
+            written = replace(written, warnings=(*written.warnings, f"{how}: {line}"))
     if arguments.export_midi is not None:
         _export(arguments, written)
     if arguments.plot is not None:

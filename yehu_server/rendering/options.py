@@ -54,7 +54,7 @@ class Part:
         if found == [PERCUSSION_CHANNEL]:
             raise ScoreError(
                 f"{self.score.name}: all its notes are of channel 10, percussion, which is played "
-                "only if it is chosen"
+                "only if it is chosen, as --channel 10 does"
             )
         raise ScoreError(f"{self.score.name}: {unheard_line(chosen, found)}")
 

@@ -13,7 +13,6 @@ The marks that are understood are listed in docs/scores.md.
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,7 +27,7 @@ from yehu_server.cli.arguments import (
     picture_output,
 )
 from yehu_server.cli.converters import number_within, positive, target
-from yehu_server.cli.terminal import compile_all, print_result, warn, warn_of_lost
+from yehu_server.cli.terminal import compile_all, print_json, print_result, warn, warn_of_lost
 from yehu_server.errors import OutputError, ScoreError
 from yehu_server.scores.score import errors_name
 from yehu_server.util.files import check_distinct, write_bytes
@@ -100,7 +99,7 @@ def _show(arguments: argparse.Namespace) -> int:
     if arguments.plot is not None:
         _plot(arguments, written)
     if arguments.json:
-        print(json.dumps(fields_of(written)))
+        print_json(fields_of(written))
     else:
         for line in lines_of(written, notes_of(instrument_of(arguments))):
             print_result(line)

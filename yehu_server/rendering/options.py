@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -16,6 +17,8 @@ from yehu_server.scores.chosen_parts import MELODIC
 from yehu_server.scores.phrasing import is_fingered, phrased
 from yehu_server.scores.score import Score, concatenate, notes_of, says_mpe
 
+BEND_RANGE = "/playing/bend_range"
+DATA, RPN = 6, (101, 100)  # controllers: RPN 0 is the bend range
 BLOCK = 1 << 14  # frames; the sound does not depend on it
 
 
@@ -27,6 +30,7 @@ class Part:
     playing: PlayingOptions = field(default_factory=PlayingOptions)
     name: str = ""
     lower_notes: int = 0  # of chords, which the score was without
+    is_rubato: bool = False  # whether onsets are others than those of a MIDI file
 
     @classmethod
     def shaped(cls, scores: Sequence[Score], playing: PlayingOptions, name: str = "") -> Part:
@@ -42,7 +46,11 @@ class Part:
         if is_fingered(score, playing):
             still = ("/playing/left_hand", 0.0)
             playing = replace(playing, start=(*playing.start, still))
-        return cls(score, playing, name or score.name, lower)
+        amount = playing.phrasing if playing.rubato is None else playing.rubato
+        is_rubato = bool(amount) and any(
+            not each.is_written and any(delay for _, delay in each.delays) for each in scores
+        )
+        return cls(score, playing, name or score.name, lower, is_rubato)
 
     def check_is_heard(self) -> None:
         """Check that one of the score's notes is played; raises ScoreError where it has some."""
@@ -57,6 +65,27 @@ class Part:
                 "only if it is chosen, as --channel 10 does"
             )
         raise ScoreError(f"{self.score.name}: {unheard_line(chosen, found)}")
+
+
+def bends_without_range(part: Part) -> bool:
+    """Whether a part has bends, and neither its score nor its options say how far they go."""
+    playing, score = part.playing, part.score
+    sets = {address for address, _ in (*playing.mapping.start, *playing.start, *playing.settings)}
+    if score.is_written or BEND_RANGE in sets or playing.mapping.mpe or says_mpe(score):
+        return False
+    channels = {note.channel for note in score.notes}.intersection(_channels(score, playing))
+    bent: set[int] = set()
+    selected: dict[int, dict[int, int]] = defaultdict(dict)  # by channel: controllers
+    for message in (event.message for event in score.events):
+        if message.type == "pitchwheel" and message.pitch:
+            bent.add(message.channel)
+        elif message.type == "control_change":
+            selected[message.channel][message.control] = message.value
+            if message.control == DATA and all(
+                selected[message.channel].get(each) == 0 for each in RPN
+            ):
+                channels.discard(message.channel)
+    return not bent.isdisjoint(channels)
 
 
 def _channels(score: Score, playing: PlayingOptions) -> Collection[int]:

@@ -67,6 +67,7 @@ class Summary:
     unknown_programs: tuple[int, ...]  # 1 to 128
     parts: tuple[PartSummary, ...] = ()
     lower_notes: int = 0  # of chords, not played
+    timing_shaped: bool = False  # whether rubato moved onsets of a MIDI file
     limited_db: float = 0.0  # by how much the limiter lowered the highest peak
     clipped: tuple[str, ...] = ()  # stems above full scale, in a format that ends there
     unheard_channels: tuple[int, ...] = ()  # 1 to 16: whose CC 7 or 11 stays at 0
@@ -135,6 +136,7 @@ def summary_of(
             sorted({each for one in players for each in one.player.unknown_programs})
         ),
         parts=parts,
+        timing_shaped=any(one.part.is_rubato for one in players),
         lower_notes=sum(one.part.lower_notes for one in players),
         limited_db=limited_db(peak / factor, players[0].player.value("/output/limiter")),
         clipped=tuple(clipped),

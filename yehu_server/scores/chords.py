@@ -12,8 +12,11 @@ STRUM_S = 0.03  # from the first to the last note of a chord, as of sections
 def without_lower_notes(score: Score, channels: Collection[int]) -> tuple[Score, int]:
     """A score whose notes on some channels are single ones, and how many it leaves out.
 
-    Of notes that begin together, or are strummed up or down, the highest stays.
+    Of notes that begin together, or are strummed up or down, the highest stays. A written score has
+    single notes; where two of it begin together, one bends to the other.
     """
+    if score.is_written:
+        return score, 0
     lower: list[ScoreNote] = []
     first_s, top = 0.0, None
     for note in notes_of(score):

@@ -1,5 +1,6 @@
 """A rendering depends on what its command names, not on what the user learned or saved."""
 
+import argparse
 import json
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import mido
 import pytest
 from midi_files import midi_file, notes
 
+from yehu_server.cli.terminal import calibrating
 from yehu_server.playing.learn import LearnedSource, learn
 from yehu_server.playing.mapping import load, mapping_folder
 
@@ -128,3 +130,12 @@ def test_the_report_says_that_rubato_shapes_the_timing(command, tmp_path):
     words += ("--overwrite", "--dry", "--rate", 22050, "--tail", 0)
     assert "timing shaped (--rubato 0 keeps" in command(*words)[1]
     assert "timing shaped" not in command(*words, "--rubato", 0)[1]
+
+
+def test_the_wait_for_a_calibration_is_announced_once_before_it(capsys):
+    for is_quiet, lines in ((False, 1), (True, 0)):
+        with calibrating(argparse.Namespace(quiet=is_quiet), 192_000.0) as progress:
+            progress(0, 2)
+            assert len(capsys.readouterr().err.splitlines()) == lines
+            progress(1, 2)
+        assert not capsys.readouterr().err

@@ -17,7 +17,14 @@ from typing import TYPE_CHECKING
 from yehu_server.cli.arguments import cluster_of
 from yehu_server.cli.folder_tasks import Line, Task, perform
 from yehu_server.cli.playing_options import playing_options_of
-from yehu_server.cli.terminal import compile_all, print_json, print_result, progress_bar, warn
+from yehu_server.cli.terminal import (
+    calibrating,
+    compile_all,
+    print_json,
+    print_result,
+    progress_bar,
+    warn,
+)
 from yehu_server.errors import OutputError, ParameterError, ScoreError, one_line
 from yehu_server.rendering import PIPE, build_records
 from yehu_server.rendering.build_records import HIDDEN, checked_line, hash_of, up_to_date
@@ -104,7 +111,7 @@ def _render_all(
         ended = _on_cluster(arguments, tasks, cluster)
     else:
         compile_all(arguments)
-        with progress_bar(arguments, "calibrating", "notes") as progress:  # before all need it
+        with calibrating(arguments, arguments.rate) as progress:  # before all need it
             playing_options_of(arguments).calibration(float(arguments.rate), progress)
         cores = arguments.jobs or os.cpu_count() or 1
         ended = perform_all(perform, tasks, min(cores, len(tasks)))

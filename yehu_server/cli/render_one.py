@@ -13,7 +13,7 @@ from yehu_server.cli import sound_options
 from yehu_server.cli.arguments import check_output, picture_output
 from yehu_server.cli.ensemble_parts import Players, players_of
 from yehu_server.cli.playing_options import playing_options_of
-from yehu_server.cli.terminal import compile_all, progress_bar, warn
+from yehu_server.cli.terminal import calibrating, compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
 from yehu_server.rendering import PIPE
 from yehu_server.scores.phrasing import PHRASING
@@ -73,7 +73,7 @@ def rendered(
         warn(line)
     compile_all(arguments)
     parts = players.parts
-    with progress_bar(arguments, "calibrating", "notes") as progress:
+    with calibrating(arguments, options.rate) as progress:
         for part in parts:
             part.playing.calibration(float(options.rate), progress)
     key = calibration_key(float(options.rate), playing.quantities, playing.a4)

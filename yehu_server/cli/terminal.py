@@ -173,6 +173,22 @@ def progress_bar(arguments: argparse.Namespace, what: str, unit: str = "s") -> I
         )
 
 
+@contextlib.contextmanager
+def calibrating(arguments: argparse.Namespace, rate: float) -> Iterator[Any]:
+    """Show how far a calibration is, as `progress_bar`; where one is made, say first for what."""
+    with progress_bar(arguments, "calibrating", "notes") as progress:
+        is_told = arguments.quiet
+
+        def report(done: float, total: float) -> None:
+            nonlocal is_told
+            if not is_told:
+                warn(f"preparing this instrument for {rate / 1000.0:g} kHz, once ...")
+            is_told = True
+            progress(done, total)
+
+        yield report
+
+
 LEVELS = ("debug", "info", "warning", "error")
 
 

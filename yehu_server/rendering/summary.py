@@ -53,8 +53,9 @@ class Summary:
 
     duration_s: float
     real_time_factor: float
-    peak: float
+    peak: float  # of samples: between them it may be higher
     rms: float
+    loudness_lufs: float | None  # integrated; None for silence
     notes_played: int
     notes_out_of_range: int
     range: str  # lowest and highest note
@@ -105,6 +106,7 @@ def summary_of(
     elapsed_s: float,
     peak: float,
     rms: float,
+    loudness_lufs: float | None,
     *,
     factor: float = 1.0,
     clipped: Sequence[str] = (),
@@ -123,6 +125,7 @@ def summary_of(
         real_time_factor=duration_s / elapsed_s,
         peak=peak,
         rms=rms,
+        loudness_lufs=loudness_lufs,
         notes_played=sum(part.notes_played for part in parts),
         notes_out_of_range=sum(part.notes_out_of_range for part in parts),
         range=range_text(players[0].player.notes),

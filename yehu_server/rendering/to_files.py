@@ -21,6 +21,7 @@ from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.scores.score import notes_of
 from yehu_server.util.files import error_reason, replace_any
+from yehu_server.util.loudness import IntegratedLoudness
 from yehu_server.util.sound_file import SoundWriter, sound_file
 
 Array = Any
@@ -157,7 +158,8 @@ def render(
 
     with contextlib.ExitStack() as stack:
         files = [stack.enter_context(opened(path)) for path in (target, *stems)]
-        takes = _takes(performance, len(files), progress, watch)
+        loudness = IntegratedLoudness(options.rate)
+        takes = _takes(performance, len(files), progress, watch, loudness)
         factor = 1.0
         if options.normalize:
             factor = write_normalized(takes, files, None if target is PIPE else target.parent)
@@ -177,16 +179,22 @@ def render(
         elapsed_s,
         file.peak,
         file.rms,
+        loudness.lufs(factor),
         factor=factor,
         clipped=clipped if ends else (),
     )
 
 
 def _takes(
-    performance: Performance, files: int, progress: ProgressCallback | None, watch: PlotData | None
+    performance: Performance,
+    files: int,
+    progress: ProgressCallback | None,
+    watch: PlotData | None,
+    loudness: IntegratedLoudness,
 ) -> Iterator[list[Samples]]:
     """Yield what goes to each of the files, block by block."""
     for samples in performance.blocks(progress):
+        loudness.add(samples)
         yield [samples, *performance.stems][:files]
         if watch is not None:
             watch.take(samples, performance.target_pitches)

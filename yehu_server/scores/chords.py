@@ -1,7 +1,5 @@
 """Leave out the lower notes of chords: one player has one line, as in written scores."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 from yehu_server.scores.score import Score, ScoreNote, notes_of, without_notes

@@ -165,6 +165,8 @@ def test_a_wrong_word_gets_a_near_one_and_the_hint_names_the_command_as_called(
         ("render", "a.mid", "-o", "a.wav", "--scale=x"): "; did you mean --tuning? ",
         ("render", "a.mid", "-o", "a.wav", "--reverb=x"): "; did you mean --room? ",
         ("render", "a.mid", "-o", "a.wav", "--articulation=x"): "did you mean --set ",
+        ("render", "a.mid", "-o", "a.wav", "--tempo=90"): "--tempo; that is done in the file",
+        ("render", "a.mid", "-o", "a.wav", "--transpose=2"): "moved by octaves to fit (--range)",
         ("play",): "did you mean serve? ",
         ("render", "a.mid", "-o", "a.wav", "--rom=hall"): "no option --rom; did you mean --room? "
         "(see scripts/yehu render --help)",

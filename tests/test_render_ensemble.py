@@ -84,6 +84,19 @@ def test_each_channel_but_percussion_is_a_yehu_with_a_place_and_chance_of_its_ow
     assert summary["lost_states"] == 0
 
 
+def test_tracks_that_sound_together_on_one_channel_are_a_yehu_each(play, tmp_path):
+    drums = notes((0.0, 0.1, 36, 99), (0.5, 0.1, 38, 99), channel=10)
+    shared = tracks_file(tmp_path / "shared.mid", line(1, 67), line(1, 72), drums)
+    summary, _, _ = play(shared, "--ensemble", "--tail", 0)
+    assert [part["channels"] for part in summary["parts"]] == [{"1": 4}, {"1": 4}]
+    assert summary["percussion_notes"] == 2
+    summary, _, _ = play(shared, "--ensemble", "--by", "track", "--channel", 10, "--tail", 0)
+    assert [part["channels"] for part in summary["parts"]] == [{"10": 2}]
+    turns = tracks_file(tmp_path / "turns.mid", line(1, 67), [(t + 2, m) for t, m in line(1, 72)])
+    summary, _, _ = play(turns, "--ensemble", "--tail", 0)
+    assert [part["channels"] for part in summary["parts"]] == [{"1": 8}]
+
+
 def test_the_report_has_a_line_for_each_part(command, trio, tmp_path):
     code, out, _ = command("render", trio, "-o", tmp_path / "out.wav", "--ensemble")
     assert code == 0
@@ -194,7 +207,7 @@ def test_by_track_each_track_with_notes_is_a_part_whatever_its_channel(play, tmp
     summary, _, _ = play(score, "--ensemble", "--by", "track")
     assert [part["name"] for part in summary["parts"]] == ["track 2", "track 4"]
     assert [part["notes_played"] for part in summary["parts"]] == [4, 4]
-    assert len(play(score, "--ensemble")[0]["parts"]) == 1
+    assert len(play(score, "--ensemble", "--by", "channel")[0]["parts"]) == 1
 
 
 def test_more_tracks_than_a_stage_has_room_for_are_refused(refused, tmp_path):

@@ -1,5 +1,6 @@
 """A rendering depends on what its command names, not on what the user learned or saved."""
 
+import argparse
 import json
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import mido
 import pytest
 from midi_files import midi_file, notes
 
+from yehu_server.cli.terminal import calibrating
 from yehu_server.playing.learn import LearnedSource, learn
 from yehu_server.playing.mapping import load, mapping_folder
 
@@ -97,3 +99,48 @@ def test_what_is_named_wrongly_is_answered_with_what_there_is(command, tmp_path)
         assert (code, said in err) == (2, True), err
     _, _, err = command("render", tune, "--presets", tmp_path / "none", "--channel", 9, "-o", out)
     assert "none: no such folder yet; --preset chooses a preset" in err
+
+
+def test_json_names_the_part_and_what_was_chosen_moved_and_taken(command, tmp_path):
+    file = mido.MidiFile(ticks_per_beat=500, charset="utf8")
+    bend = (0.0, mido.Message("pitchwheel", pitch=800))
+    low = notes(*((0.125 * at, 0.125, key, 80) for at, key in enumerate((60, 62, 64))))
+    bass = notes((0.0, 0.375, 31, 90), channel=2)
+    for name, events in (("二胡", [bend, *low]), ("低音", bass)):
+        track, now = file.add_track(name), 0
+        for time, message in sorted(events, key=lambda each: each[0]):
+            track.append(message.copy(time=round(1000 * time) - now))
+            now = round(1000 * time)
+    file.save(tmp_path / "film.mid")
+    words = ("render", tmp_path / "film.mid", "-o", tmp_path / "out.wav", "--tail", 0)
+    code, printed, err = command(*words, "--json", "--rate", 22050)
+    assert code == 0, err
+    fields = json.loads(printed)
+    assert fields["parts"][0]["name"] == "二胡" in printed
+    said = (
+        "film: plays 二胡; also there: 低音",
+        "film: moved to fit",
+        "no bend range in the file: 2",
+    )
+    assert all(map(str.startswith, fields["warnings"], said))
+    assert len(fields["warnings"]) == len(said)
+    assert not fields["timing_shaped"]  # of a phrase so short
+    bent = ("--overwrite", "--quiet", "--json", "--set", "/playing/bend_range=12")
+    assert len(json.loads(command(*words, *bent)[1])["warnings"]) == 2
+
+
+def test_the_report_says_that_rubato_shapes_the_timing(command, tmp_path):
+    tune = notes(*((0.25 * at, 0.24, 67 + at % 5, 80) for at in range(9)))
+    words = ("render", midi_file(tmp_path / "tune.mid", tune), "-o", tmp_path / "out.wav")
+    words += ("--overwrite", "--dry", "--rate", 22050, "--tail", 0)
+    assert "timing shaped (--rubato 0 keeps" in command(*words)[1]
+    assert "timing shaped" not in command(*words, "--rubato", 0)[1]
+
+
+def test_the_wait_for_a_calibration_is_announced_once_before_it(capsys):
+    for is_quiet, lines in ((False, 1), (True, 0)):
+        with calibrating(argparse.Namespace(quiet=is_quiet), 192_000.0) as progress:
+            progress(0, 2)
+            assert len(capsys.readouterr().err.splitlines()) == lines
+            progress(1, 2)
+        assert not capsys.readouterr().err

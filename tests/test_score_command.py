@@ -74,7 +74,7 @@ def test_what_is_played_is_written_as_midi(command, refused, tune, tmp_path):
     code, shown, _ = command("score", "show", target)  # it has its parts and notes to show
     assert code == 0
     assert "5 notes, F#4 to C5" in shown
-    assert shown.splitlines()[-1].startswith("without ")
+    assert shown.splitlines()[-1].startswith("played, but not shown here: CC 11")
     over = ("score", "show", tune, "--export-midi", tune, "--overwrite")
     assert "would overwrite an input" in refused(*over)
 

@@ -1,12 +1,14 @@
-"""True peaks, of waves whose own are known."""
+"""True peaks, of waves whose own are known; and integrated loudness."""
 
 import itertools
 import math
 
 import numpy as np
 import pytest
+from measures.bs1770 import lufs
 
 from yehu_server.rendering.to_files import PHASES, TAPS, TruePeak
+from yehu_server.util.loudness import IntegratedLoudness
 
 
 def peak_of(sound: np.ndarray, block: int = 1000) -> float:
@@ -45,3 +47,17 @@ def test_it_is_as_without_blocks_and_without_leaving_anything_out():
 def test_what_the_last_samples_lead_to_counts():
     sound = np.array([0.0, 0.5, 1.0, 1.0])
     assert 1.05 < peak_of(sound) == peak_of(np.concatenate((sound, np.zeros(30))))
+
+
+def test_loudness_is_that_of_filters_with_a_memory():
+    rng = np.random.default_rng(1)
+    for rate, share in ((44100, 0.02), (96000, 0.005)):
+        frames = np.arange(3 * rate)
+        loud = np.where(frames < 2 * rate, 0.2, 0.002)  # the end is below the gate
+        wave = np.sin(2.0 * np.pi * share * frames)
+        sound = np.column_stack([wave, rng.normal(size=len(frames))]) * loud[:, None]
+        meter = IntegratedLoudness(rate)
+        for block in np.array_split(sound, 50):
+            meter.add(block)
+        assert meter.lufs(0.5) == pytest.approx(lufs(0.5 * sound, rate), abs=0.1)
+    assert IntegratedLoudness(44100).lufs() is None

@@ -7,12 +7,16 @@ import numpy as np
 import pytest
 from midi_files import midi_file, notes
 
+from yehu_server.errors import ScoreError
 from yehu_server.playing.mapping import load
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
+from yehu_server.rendering.to_files import render
 from yehu_server.scores.reading import ReadOptions, part_of, read_any
 from yehu_server.scores.score import Score, notes_of
+from yehu_server.scores.transcription import read_as_written
 
 PLAYING = PlayingOptions(mapping=load("keyboard-articulations")).shaping(0.5)
 FIRST = 36  # C2
@@ -56,8 +60,9 @@ def sound(score: Score) -> tuple[np.ndarray, dict[int, int]]:
 def test_key_switches_sound_as_the_controller_does(read, lower):
     by_keys = read(*switches(), *tune(lower))
     by_controller = read(*controllers(), *tune(lower))
-    assert by_keys.remarks == by_controller.remarks
-    assert len(by_keys.remarks) == lower // 12  # "moved to fit"
+    taken = "notes taken as key switches: 2 (articulations: 2)"
+    assert by_keys.remarks == (taken, *by_controller.remarks)
+    assert len(by_controller.remarks) == lower // 12  # "moved to fit"
     samples, channels = sound(by_keys)
     assert channels == {0: len(TUNE)}
     assert samples.any()
@@ -71,7 +76,7 @@ def test_a_channel_of_key_switches_is_no_part_and_moves_no_other(read):
     assert {note.channel for note in notes_of(score)} == {0}
     low = [(at + 0.01, message) for at, message in tune(12, channel=2)]
     chosen = read(*tune(), *low, *switches(2))
-    assert chosen.remarks[0].startswith("plays ")
+    assert chosen.remarks[1].startswith("plays ")
     assert not [each for each in chosen.events if each.message.type == "setting"]
     every = read(*tune(), *low, *switches(2), all_parts=True)
     second = part_of(every, 1)
@@ -88,3 +93,27 @@ def test_other_mappings_and_percussion_have_notes_there(read):
     assert len(notes_of(read(*switches(10), *tune()))) == len(TUNE) + len(CHOSEN)
     drummer = replace(PLAYING, channels=frozenset({0, 9}))
     assert len(notes_of(read(*switches(10), *tune(), playing=drummer))) == len(TUNE)
+
+
+def test_keys_of_another_library_far_below_are_left_out_and_the_tune_moves(read, tmp_path):
+    """Those of a mapping are read before."""
+    skips = replace(PLAYING, mapping=load("keyboard"), policy=RangePolicy.SKIP)
+    score = read(*switches(), *tune(12), playing=skips)
+    assert [note.key for note in notes_of(score)] == [key for *_, key in TUNE]
+    assert score.remarks[0] == "notes far below the tune left out, as key switches: 2"
+    assert "an octave up" in score.remarks[1]
+    shown, _ = read_as_written(tmp_path / "tune.mid")
+    assert shown.remarks == ("may be key switches, far below the tune: 2 notes (--range skip)",)
+
+
+def test_a_rendering_without_a_note_is_an_error_and_writes_nothing(read, tmp_path):
+    clamps = replace(PLAYING, mapping=load("keyboard"), policy=RangePolicy.CLAMP)
+    part = Part.shaped([read(*tune(36), playing=clamps)], replace(clamps, policy=RangePolicy.SKIP))
+    with pytest.raises(ScoreError, match="tune: none of its notes is played"):
+        render([part], tmp_path / "out.wav", Options(rate=22050, tail_s=0.0))
+    assert not (tmp_path / "out.wav").exists()
+
+
+def test_a_tune_that_is_all_key_switches_is_refused(read):
+    with pytest.raises(ScoreError, match=r"no other note: .* 3 \(articulations: 2\)"):
+        read(*tune(36))

@@ -7,7 +7,7 @@ from musicxml_text import note, score
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.octaves import NoteSpan, octaves_of
-from yehu_server.scores.reading import ReadOptions, read_any
+from yehu_server.scores.reading import ReadOptions, percussion_notes, read_any
 from yehu_server.scores.score import notes_of
 from yehu_server.scores.tune_part import OVERLAP, melodic_part, take_turns
 
@@ -116,6 +116,15 @@ def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(file):
     line = "plays Flute; also there: Cello, channel 3 (--part"
     assert read_any(tracks).remarks[0].startswith(line)
     assert keys(read_any(tracks, ReadOptions(("Cello",)))) == [76, 79]
+
+
+def test_percussion_is_counted_beside_the_part_that_plays_and_is_no_part(file):
+    song = file(Lead=notes(70, 72), Pad=notes(66, channel=1), Drums=notes(38, 40, channel=9))
+    score = read_any(song, ReadOptions(("Lead",)))
+    assert percussion_notes([score]) == 2
+    assert [each.key for each in notes_of(score) if each.channel != 9] == [70, 72]
+    with pytest.raises(ScoreError, match=r"no part Drums.*--channel 10 plays it"):
+        read_any(song, ReadOptions(("Drums",)))
 
 
 def test_only_what_is_played_counts_in_what_moves(file):

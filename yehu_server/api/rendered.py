@@ -30,6 +30,7 @@ from yehu_server.rendering.to_files import NORMALIZED_PEAK, TruePeak
 from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import Score
+from yehu_server.util.loudness import IntegratedLoudness
 
 Sound = NDArray[np.float32]
 Floats = NDArray[np.float64]
@@ -258,7 +259,10 @@ def _played(
     rms = float(np.sqrt(np.mean(np.square(sound, dtype=np.float64)))) if sound.size else 0.0
     elapsed_s = time.perf_counter() - start
     length_s = frames / options.rate
-    summary = summary_of(performance, length_s, elapsed_s, peak, rms, factor=factor)
+    loudness = IntegratedLoudness(options.rate)
+    loudness.add(sound)
+    levels = peak, rms, loudness.lufs()
+    summary = summary_of(performance, length_s, elapsed_s, *levels, factor=factor)
     return sound, (np.array(times), np.array(pitches)), summary
 
 

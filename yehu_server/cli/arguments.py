@@ -36,6 +36,11 @@ class HelpFormatter(RawDescriptionRichHelpFormatter):
 
 
 # What argparse says of a wrong choice; from Python 3.12 on without quotation marks.
+IN_FILE = "that is done in the file, before it is played"
+ELSEWHERE = {  # what players of files look for, and where it is
+    "--transpose": f"{IN_FILE}; parts are moved by octaves to fit (--range), --a4 tunes",
+    **dict.fromkeys(("--from", "--start", "--end", "--to", "--tempo", "--bpm"), IN_FILE),
+}
 CHOICE = re.compile(r"argument (.*?): invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
 
 
@@ -144,6 +149,8 @@ class Parser(argparse.ArgumentParser):
 
     def _near(self, option: str) -> str:
         """A hint at an option, or at the parameter of that name where one can be set."""
+        if "--song" in self.options and option in ELSEWHERE:
+            return f"; {ELSEWHERE[option]}"
         name = f"/playing/{option.lstrip('-').replace('-', '_')}"
         if "--set" in self.options and name in BY_ADDRESS:
             return f"; did you mean --set {name}=VALUE?"

@@ -10,11 +10,11 @@ name, or a host API alone, such as JACK, for the first of its devices.
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_command, add_options
+from yehu_server.cli.terminal import print_json
 from yehu_server.errors import DeviceError, one_line
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
         api, midi, midi_problem = list_inputs()
     if arguments.json:
         found = {"audio": _rows(outputs), "audio_inputs": _rows(inputs), "audio_problem": problem}
-        print(json.dumps({**found, "midi": midi, "midi_api": api, "midi_problem": midi_problem}))
+        print_json({**found, "midi": midi, "midi_api": api, "midi_problem": midi_problem})
     else:
         devices_report(outputs, inputs, problem, api, midi, midi_problem)
     return 0

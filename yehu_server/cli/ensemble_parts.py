@@ -55,13 +55,9 @@ def players_of(
     ensemble = None
     files: list[Path] = []
     parts: list[Part] = []
-    spare = 0
     if arguments.ensemble == BY_MIDI:
-        if arguments.channel is not None:
-            Part(concatenate(scores), playing).check_is_heard()
+        Part(concatenate(scores), playing).check_is_heard()
         entries = _entries(arguments, scores)
-        is_counted = arguments.channel is None and arguments.by == "channel"
-        spare = percussion_notes(scores) if is_counted else 0
     else:
         from yehu_server.scores.ensemble_file import read_ensemble
 
@@ -99,7 +95,9 @@ def players_of(
         parts.append(Part.shaped(played, own, entry.name or what))
     if ensemble is not None:
         _warn_of_unplayed(ensemble, scores)
-    return Players(tuple(parts), tuple(files), spare)
+    is_counted = ensemble is None and arguments.channel is None
+    spare = percussion_notes(scores) - percussion_notes(part.score for part in parts)
+    return Players(tuple(parts), tuple(files), spare if is_counted else 0)
 
 
 def _with_own_moves(score: Score, written: Score, name: str, within: NoteRange) -> Score:
@@ -122,15 +120,22 @@ def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[Par
     from yehu_server.core.engine.rig import MAX_PARTS
     from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
     from yehu_server.scores.ensemble_file import PartEntry
-    from yehu_server.scores.reading import channels_with_notes, part_name, tracks_with_notes
+    from yehu_server.scores.reading import (
+        channels_with_notes,
+        part_name,
+        shares_channels,
+        tracks_with_notes,
+    )
 
-    if arguments.by == "track":
+    chosen = arguments.channel or [each for each in range(16) if each != PERCUSSION_CHANNEL]
+    if arguments.by == "track" or (
+        arguments.by is None and arguments.channel is None and shares_channels(scores)
+    ):
         found = [
             PartEntry("", name=part_name(scores, track=track), track=track)
-            for track in tracks_with_notes(scores)
+            for track in tracks_with_notes(scores, chosen)
         ]
     else:
-        chosen = arguments.channel or [each for each in range(16) if each != PERCUSSION_CHANNEL]
         found = [
             PartEntry("", name=part_name(scores, channel=channel), channel=channel)
             for channel in channels_with_notes(scores)

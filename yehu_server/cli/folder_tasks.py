@@ -90,6 +90,7 @@ def _made(task: Task, work: Path, report_progress: ProgressCallback) -> Line:
         "notes": summary.notes_played,
         "out_of_range": summary.notes_out_of_range,
         "peak": summary.peak,
+        "loudness_lufs": summary.loudness_lufs,
         "warnings": [
             each.removeprefix("yehu-server: ") for each in printed.getvalue().splitlines()
         ],

@@ -29,7 +29,14 @@ from yehu_server.cli.arguments import (
 )
 from yehu_server.cli.converters import hours, number_within, target
 from yehu_server.cli.playing_options import add_playing, playing_options_of
-from yehu_server.cli.terminal import compile_all, print_report, progress_bar, warn, warn_of_lost
+from yehu_server.cli.terminal import (
+    calibrating,
+    compile_all,
+    print_report,
+    progress_bar,
+    warn,
+    warn_of_lost,
+)
 from yehu_server.errors import OutputError
 from yehu_server.scores.score import MAX_DURATION_H
 from yehu_server.util.files import check_distinct, check_target, write_bytes
@@ -162,7 +169,7 @@ def _write(
         warn_of_lost(arguments.output, lost)
         return
     compile_all(arguments)
-    with progress_bar(arguments, "calibrating", "notes") as progress:
+    with calibrating(arguments, options.rate) as progress:
         playing.calibration(float(options.rate), progress)
     from yehu_server.rendering.options import Part
     from yehu_server.rendering.plot_data import PlotData

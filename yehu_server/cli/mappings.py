@@ -12,7 +12,6 @@ What can be moved is listed in docs/parameters.md.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from dataclasses import replace
@@ -28,7 +27,7 @@ from yehu_server.cli.arguments import (
     server_of,
 )
 from yehu_server.cli.converters import target
-from yehu_server.cli.terminal import check_files, print_result
+from yehu_server.cli.terminal import check_files, print_json, print_result
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.util.files import write_bytes
 
@@ -83,7 +82,7 @@ def _list(arguments: argparse.Namespace) -> int:
     abouts = {name: _about(name) for name in shipped_mappings() if name not in own}
     abouts |= {name: f"yours: {_about(name)}" for name in own}
     if arguments.json:
-        print(json.dumps(abouts))
+        print_json(abouts)
     else:
         width = max(map(len, abouts))
         print_result("\n".join(f"{name:{width}}  {about}" for name, about in abouts.items()))
@@ -106,7 +105,7 @@ def _show(arguments: argparse.Namespace) -> int:
         return _show_live(arguments)
     mapping = load(arguments.mapping or DEFAULT, user_first=True)
     if arguments.json:
-        print(json.dumps(_fields(mapping)))
+        print_json(_fields(mapping))
     else:
         from yehu_server.cli.report import mapping_report
 
@@ -127,7 +126,7 @@ def _show_live(arguments: argparse.Namespace) -> int:
     with OscClient(server_of(arguments)) as client:
         rows = _bindings(client)
         if arguments.json:
-            print(json.dumps([dict(zip(BINDING, row, strict=True)) for row in rows]))
+            print_json([dict(zip(BINDING, row, strict=True)) for row in rows])
             return 0
         console = Console(markup=False, emoji=False, highlight=False)
         if not sys.stdout.isatty():

@@ -77,7 +77,8 @@ def add_tables(group: Any) -> None:
     add_options(
         group,
         "--range: what to do with notes outside the range of the instrument, F4 to F6 of a yehu: "
-        "transpose by octaves, clamp to the nearest note, or skip (default: transpose)",
+        "transpose by octaves, clamp to the nearest note, or skip "
+        "those that no octave fits, and key switches (default: transpose)",
         range={"choices": ("transpose", "clamp", "skip"), "default": "transpose"},
     )
 

@@ -8,14 +8,13 @@ docs/parameters.md describes the values.
 """
 
 import argparse
-import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import add_action, add_actions, add_command, add_options
 from yehu_server.cli.playing_options import add_presets_folder
-from yehu_server.cli.terminal import check_files, print_result, warn
+from yehu_server.cli.terminal import check_files, print_json, print_result, warn
 from yehu_server.params.table import find
 
 
@@ -47,7 +46,7 @@ def _list(arguments: argparse.Namespace) -> int:
             }
             for preset in found
         }
-        print(json.dumps(rows))
+        print_json(rows)
     else:
         width = max((len(preset.name) for preset in found), default=0)
         for preset in found:
@@ -64,7 +63,7 @@ def _show(arguments: argparse.Namespace) -> int:
     preset = Presets(arguments.presets).find(arguments.preset)
     if arguments.json:
         fields = {"name": preset.name, "about": preset.about, "program": preset.program}
-        print(json.dumps(fields | {"values": preset.values, "unknown": preset.unknown}))
+        print_json(fields | {"values": preset.values, "unknown": preset.unknown})
         return 0
     print_result(f"{preset.name}: {preset.about}" if preset.about else preset.name)
     if preset.program is not None:

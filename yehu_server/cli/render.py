@@ -16,7 +16,6 @@ docs/midi_files.md describes how damaged MIDI files are read.
 """
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import Any
@@ -35,7 +34,7 @@ from yehu_server.cli.playing_options import add_playing
 from yehu_server.cli.render_one import rendered
 from yehu_server.cli.render_pipe import piped_in, quiet_pipe, score_source, sound_target
 from yehu_server.cli.sound_options import add_sound, add_stage
-from yehu_server.cli.terminal import print_result, warn
+from yehu_server.cli.terminal import print_json, print_result, warn
 from yehu_server.rendering import PIPE
 from yehu_server.scores.score import MAX_DURATION_H
 from yehu_server.util.subtypes import FORMATS, SUBTYPES
@@ -101,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 1
     is_piped = arguments.output is PIPE  # the sound is on standard output
     if arguments.json:
-        print(json.dumps(done.fields), file=sys.stderr if is_piped else sys.stdout)
+        print_json(done.fields, sys.stderr if is_piped else sys.stdout)
     elif not arguments.quiet:
         from yehu_server.cli.report import render_report
 

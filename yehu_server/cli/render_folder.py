@@ -17,7 +17,14 @@ from typing import TYPE_CHECKING
 from yehu_server.cli.arguments import cluster_of
 from yehu_server.cli.folder_tasks import Line, Task, perform
 from yehu_server.cli.playing_options import playing_options_of
-from yehu_server.cli.terminal import compile_all, print_result, progress_bar, warn
+from yehu_server.cli.terminal import (
+    calibrating,
+    compile_all,
+    print_json,
+    print_result,
+    progress_bar,
+    warn,
+)
 from yehu_server.errors import OutputError, ParameterError, ScoreError, one_line
 from yehu_server.rendering import PIPE, build_records
 from yehu_server.rendering.build_records import HIDDEN, checked_line, hash_of, up_to_date
@@ -62,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
         tasks, current = split_up_to_date(arguments, tree)
         lines += current
         for line in lines * arguments.json:
-            print(json.dumps(line))
+            print_json(line)
         try:
             if tasks:
                 _render_all(arguments, tasks, len(tree.entries), lines, cluster)
@@ -104,7 +111,7 @@ def _render_all(
         ended = _on_cluster(arguments, tasks, cluster)
     else:
         compile_all(arguments)
-        with progress_bar(arguments, "calibrating", "notes") as progress:  # before all need it
+        with calibrating(arguments, arguments.rate) as progress:  # before all need it
             playing_options_of(arguments).calibration(float(arguments.rate), progress)
         cores = arguments.jobs or os.cpu_count() or 1
         ended = perform_all(perform, tasks, min(cores, len(tasks)))
@@ -153,7 +160,7 @@ def _line_of(task: Task, event: Event) -> Line:
 def _report(arguments: argparse.Namespace, line: Line, number: int, total: int) -> None:
     """Report a file: as JSON, or as a line where there is no progress bar."""
     if arguments.json:
-        print(json.dumps(line), flush=True)
+        print_json(line)
     elif not arguments.quiet and not sys.stderr.isatty():
         what = "failed" if "error" in line else f"{line['duration_s']:.1f} s"
         print_result(f"{number} of {total}: {one_line(line['file'])}: {what}", flush=True)

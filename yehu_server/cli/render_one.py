@@ -13,7 +13,7 @@ from yehu_server.cli import sound_options
 from yehu_server.cli.arguments import check_output, picture_output
 from yehu_server.cli.ensemble_parts import Players, players_of
 from yehu_server.cli.playing_options import playing_options_of
-from yehu_server.cli.terminal import compile_all, progress_bar, warn
+from yehu_server.cli.terminal import calibrating, compile_all, progress_bar, warn
 from yehu_server.errors import OutputError
 from yehu_server.rendering import PIPE
 from yehu_server.scores.phrasing import PHRASING
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from yehu_server.core.physics.default_quantities import Quantities
     from yehu_server.playing.options import PlayingOptions
-    from yehu_server.rendering.options import Options
+    from yehu_server.rendering.options import Options, Part
     from yehu_server.rendering.summary import PartSummary, Summary
 
 
@@ -48,7 +48,6 @@ def rendered(
     `follow`: called with the seconds done and those of the score, in place of a progress bar.
     """
     from yehu_server.playing.calibration import calibration_key
-    from yehu_server.rendering.options import Part
     from yehu_server.rendering.to_files import render
 
     sound_options.check_stage(arguments)
@@ -63,18 +62,18 @@ def rendered(
     scores = cache(partial(_scores, arguments, playing))
     own = playing.quantities, playing.mapping.key_switches
     if arguments.ensemble is None:
-        part = Part.shaped(scores(*own), playing)
-        part.check_is_heard()
-        players = Players((part,))
+        players = Players((_part(scores(*own), playing),))
     else:
         players = players_of(arguments, scores, playing)
     read = [*arguments.midi, *playing.files, *players.files]
     stems = _stems(arguments, options, players)
     check_distinct({**outputs, **{f"stem {stem.name}": stem for stem in stems}}, read)
-    _warn_of_scores(arguments, players, scores(*own))
+    remarks, warnings = _remarks(arguments, players, scores(*own))
+    for line in warnings if arguments.quiet else (*remarks, *warnings):
+        warn(line)
     compile_all(arguments)
     parts = players.parts
-    with progress_bar(arguments, "calibrating", "notes") as progress:
+    with calibrating(arguments, options.rate) as progress:
         for part in parts:
             part.playing.calibration(float(options.rate), progress)
     key = calibration_key(float(options.rate), playing.quantities, playing.a4)
@@ -98,7 +97,19 @@ def rendered(
     summary = replace(summary, percussion_notes=summary.percussion_notes + players.percussion_notes)
     shaped = {"phrasing": playing.phrasing, "rubato": playing.rubato}
     fields = {**_fields(summary, playing, stems), **shaped, "calibration": key}
+    fields["warnings"] = [*remarks, *warnings]  # as a folder's manifest has them
     return Rendered(summary, fields, read)
+
+
+def _part(scores: Sequence[Score], playing: PlayingOptions) -> Part:
+    """The only player, by the name of the part, if it has one; else that of the scores."""
+    from yehu_server.rendering.options import Part
+
+    names = [part.name for score in scores for part in score.parts]
+    is_named = len(names) == 1 and not names[0].startswith(("channel ", "track "))
+    part = Part.shaped(scores, playing, names[0] if is_named else "")
+    part.check_is_heard()
+    return part
 
 
 def _format(arguments: argparse.Namespace) -> str:
@@ -179,22 +190,23 @@ def _scores(
     return scores
 
 
-def _warn_of_scores(
+def _remarks(
     arguments: argparse.Namespace, players: Players, scores: Sequence[Score]
-) -> None:
-    """Warn of what is wrong in the scores; unless quiet, also of what a player should know."""
-    from yehu_server.rendering.options import unheard_line
+) -> tuple[list[str], list[str]]:
+    """What a player should know of the scores, and what is wrong in them."""
+    from yehu_server.rendering.options import bends_without_range, unheard_line
     from yehu_server.scores.reading import channels_with_notes
 
     played = [part.score for part in players.parts]
-    lines = [*played[0].warnings]
-    if not arguments.quiet:
-        remarks = [line for score in played for line in score.remarks]
-        unheard = unheard_line(arguments.channel or (), channels_with_notes(scores))
-        is_mpe = players.parts[0].playing.mapping.mpe  # whose members may be without notes
-        lines = [*remarks, *([] if is_mpe else filter(None, [unheard])), *lines]
-    for line in dict.fromkeys(lines):
-        warn(line)
+    remarks = [line for score in played for line in score.remarks]
+    unheard = unheard_line(arguments.channel or (), channels_with_notes(scores))
+    is_mpe = players.parts[0].playing.mapping.mpe  # whose members may be without notes
+    remarks += [] if is_mpe else filter(None, [unheard])
+    if any(map(bends_without_range, players.parts)):
+        remarks.append(
+            "no bend range in the file: 2 semitones taken; --set /playing/bend_range=12 changes it"
+        )
+    return [*dict.fromkeys(remarks)], [*dict.fromkeys(played[0].warnings)]
 
 
 def _warn_of_own(arguments: argparse.Namespace, playing: PlayingOptions) -> None:

@@ -36,7 +36,11 @@ def decibels(level: float) -> str:
 def render_report(target: Path, summary: Summary) -> str:
     """The report on a rendering."""
     pace = f"{summary.duration_s:.1f} s, {summary.real_time_factor:.0f} x real time"
-    lines = [f"{target}: {pace}, peak {decibels(summary.peak)}, rms {decibels(summary.rms)}"]
+    timing = ", timing shaped (--rubato 0 keeps the file's)" if summary.timing_shaped else ""
+    level = f"sample peak {decibels(summary.peak)}, rms {decibels(summary.rms)}"
+    if summary.loudness_lufs is not None:
+        level += f", {summary.loudness_lufs:.1f} LUFS"
+    lines = [f"{target}: {pace}, {level}{timing}"]
     heard = ", ".join(
         f"{channel + 1} ({counted(notes, 'note')})"
         for channel, notes in summary.notes_by_channel.items()

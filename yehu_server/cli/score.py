@@ -13,7 +13,6 @@ The marks that are understood are listed in docs/scores.md.
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,7 +27,7 @@ from yehu_server.cli.arguments import (
     picture_output,
 )
 from yehu_server.cli.converters import number_within, positive, target
-from yehu_server.cli.terminal import compile_all, print_result, warn, warn_of_lost
+from yehu_server.cli.terminal import compile_all, print_json, print_result, warn, warn_of_lost
 from yehu_server.errors import OutputError, ScoreError
 from yehu_server.scores.score import errors_name
 from yehu_server.util.files import check_distinct, write_bytes
@@ -84,20 +83,23 @@ def add_to(commands: Any) -> None:
 
 def _show(arguments: argparse.Namespace) -> int:
     from yehu_server.playing.stringing import notes_of
-    from yehu_server.scores.transcription import read_as_written
+    from yehu_server.scores.transcription import UNPLAYED, read_as_written
     from yehu_server.scores.written.notated import times
     from yehu_server.scores.written.text import fields_of, lines_of
 
     written, left = read_as_written(arguments.score, arguments.song)
-    if left:
-        line = ", ".join(times(name, count) for name, count in sorted(left.items()))
-        written = replace(written, warnings=(*written.warnings, f"without {line}"))
+    unplayed = {name: left.pop(name) for name in UNPLAYED if name in left}
+    what = {"not played": unplayed, "played, but not shown here": left}
+    for how, names in what.items():
+        line = ", ".join(times(name, count) for name, count in sorted(names.items()))
+        if line:
+            written = replace(written, warnings=(*written.warnings, f"{how}: {line}"))
     if arguments.export_midi is not None:
         _export(arguments, written)
     if arguments.plot is not None:
         _plot(arguments, written)
     if arguments.json:
-        print(json.dumps(fields_of(written)))
+        print_json(fields_of(written))
     else:
         for line in lines_of(written, notes_of(instrument_of(arguments))):
             print_result(line)

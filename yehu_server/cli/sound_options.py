@@ -71,14 +71,15 @@ def add_stage(parser: Any) -> None:
         """
         --ensemble FILE.toml: play each MIDI channel but 10, or each part of a score, on a yehu of
             its own, up to 16; FILE.toml says who plays what, and where they sit
-        --by: with --ensemble: each channel or each track is a part (default: channel)
+        --by: with --ensemble: each channel or each track is a part (default: channel; track,
+            where tracks that sound together share one)
         --stems FOLDER: also write a file for each part, and one for the room: 01-NAME.wav ...
             room.wav
         --jobs N: number of cores to use for an ensemble or a folder (default: all); the sound is
             the same
         """,
         ensemble={"nargs": "?", "type": _ensemble_file, "const": BY_MIDI},
-        by={"choices": ("channel", "track"), "default": "channel"},
+        by={"choices": ("channel", "track")},
         stems=target,
         jobs=positive,
     )

@@ -13,7 +13,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, TextIO
 
 from yehu_server.errors import YehuError, one_line
 
@@ -30,10 +30,21 @@ def print_result(text: str, *, flush: bool = False) -> None:
         print(one_line(line), flush=flush)
 
 
+def print_json(fields: Any, file: TextIO | None = None) -> None:
+    """Print JSON on a line, with letters as they are where the output can hold them."""
+    file = file or sys.stdout
+    text = json.dumps(fields, ensure_ascii=False)
+    try:
+        text.encode(file.encoding or "ascii")
+    except UnicodeEncodeError:
+        text = json.dumps(fields)
+    print(text, file=file, flush=True)
+
+
 def print_report(arguments: argparse.Namespace, fields: dict[str, Any], text: str) -> None:
     """Print what a command did: as JSON with --json, else in words; with --quiet, nothing."""
     if arguments.json:
-        print(json.dumps(fields))
+        print_json(fields)
     elif not arguments.quiet:
         print_result(text)
 
@@ -160,6 +171,22 @@ def progress_bar(arguments: argparse.Namespace, what: str, unit: str = "s") -> I
         yield lambda done, total: bar.update(
             task, completed=min(done, total), total=total, visible=True
         )
+
+
+@contextlib.contextmanager
+def calibrating(arguments: argparse.Namespace, rate: float) -> Iterator[Any]:
+    """Show how far a calibration is, as `progress_bar`; where one is made, say first for what."""
+    with progress_bar(arguments, "calibrating", "notes") as progress:
+        is_told = arguments.quiet
+
+        def report(done: float, total: float) -> None:
+            nonlocal is_told
+            if not is_told:
+                warn(f"preparing this instrument for {rate / 1000.0:g} kHz, once ...")
+            is_told = True
+            progress(done, total)
+
+        yield report
 
 
 LEVELS = ("debug", "info", "warning", "error")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -10,10 +11,14 @@ from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.stage.image_sources import EARS
 from yehu_server.errors import ScoreError
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import section_size
+from yehu_server.scores.chords import without_lower_notes
 from yehu_server.scores.chosen_parts import MELODIC
 from yehu_server.scores.phrasing import is_fingered, phrased
-from yehu_server.scores.score import Score, concatenate, notes_of
+from yehu_server.scores.score import Score, concatenate, notes_of, says_mpe
 
+BEND_RANGE = "/playing/bend_range"
+DATA, RPN = 6, (101, 100)  # controllers: RPN 0 is the bend range
 BLOCK = 1 << 14  # frames; the sound does not depend on it
 
 
@@ -24,15 +29,28 @@ class Part:
     score: Score  # shaped already (``scores.phrasing``)
     playing: PlayingOptions = field(default_factory=PlayingOptions)
     name: str = ""
+    lower_notes: int = 0  # of chords, which the score was without
+    is_rubato: bool = False  # whether onsets are others than those of a MIDI file
 
     @classmethod
     def shaped(cls, scores: Sequence[Score], playing: PlayingOptions, name: str = "") -> Part:
-        """The part of a player who plays scores one after another, and shapes them."""
+        """The part of a player who plays scores one after another, and shapes them.
+
+        Of a chord one player has the highest note; a section shares its notes.
+        """
+        lower = 0
+        if section_size(playing) == 1:
+            single = [without_lower_notes(each, _channels(each, playing)) for each in scores]
+            scores, lower = [score for score, _ in single], sum(left for _, left in single)
         score = concatenate([phrased(each, playing) for each in scores])
         if is_fingered(score, playing):
             still = ("/playing/left_hand", 0.0)
             playing = replace(playing, start=(*playing.start, still))
-        return cls(score, playing, name or score.name)
+        amount = playing.phrasing if playing.rubato is None else playing.rubato
+        is_rubato = bool(amount) and any(
+            not each.is_written and any(delay for _, delay in each.delays) for each in scores
+        )
+        return cls(score, playing, name or score.name, lower, is_rubato)
 
     def check_is_heard(self) -> None:
         """Check that one of the score's notes is played; raises ScoreError where it has some."""
@@ -44,9 +62,37 @@ class Part:
         if found == [PERCUSSION_CHANNEL]:
             raise ScoreError(
                 f"{self.score.name}: all its notes are of channel 10, percussion, which is played "
-                "only if it is chosen"
+                "only if it is chosen, as --channel 10 does"
             )
         raise ScoreError(f"{self.score.name}: {unheard_line(chosen, found)}")
+
+
+def bends_without_range(part: Part) -> bool:
+    """Whether a part has bends, and neither its score nor its options say how far they go."""
+    playing, score = part.playing, part.score
+    sets = {address for address, _ in (*playing.mapping.start, *playing.start, *playing.settings)}
+    if score.is_written or BEND_RANGE in sets or playing.mapping.mpe or says_mpe(score):
+        return False
+    channels = {note.channel for note in score.notes}.intersection(_channels(score, playing))
+    bent: set[int] = set()
+    selected: dict[int, dict[int, int]] = defaultdict(dict)  # by channel: controllers
+    for message in (event.message for event in score.events):
+        if message.type == "pitchwheel" and message.pitch:
+            bent.add(message.channel)
+        elif message.type == "control_change":
+            selected[message.channel][message.control] = message.value
+            if message.control == DATA and all(
+                selected[message.channel].get(each) == 0 for each in RPN
+            ):
+                channels.discard(message.channel)
+    return not bent.isdisjoint(channels)
+
+
+def _channels(score: Score, playing: PlayingOptions) -> Collection[int]:
+    """The channels of a score that a player plays."""
+    if playing.channels is not None:
+        return playing.channels
+    return range(16) if playing.mapping.mpe or says_mpe(score) else MELODIC
 
 
 def unheard_line(chosen: Collection[int], found: Sequence[int]) -> str:

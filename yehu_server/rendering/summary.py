@@ -53,8 +53,9 @@ class Summary:
 
     duration_s: float
     real_time_factor: float
-    peak: float
+    peak: float  # of samples: between them it may be higher
     rms: float
+    loudness_lufs: float | None  # integrated; None for silence
     notes_played: int
     notes_out_of_range: int
     range: str  # lowest and highest note
@@ -66,6 +67,8 @@ class Summary:
     percussion_notes: int  # of channel 10, not played
     unknown_programs: tuple[int, ...]  # 1 to 128
     parts: tuple[PartSummary, ...] = ()
+    lower_notes: int = 0  # of chords, not played
+    timing_shaped: bool = False  # whether rubato moved onsets of a MIDI file
     limited_db: float = 0.0  # by how much the limiter lowered the highest peak
     clipped: tuple[str, ...] = ()  # stems above full scale, in a format that ends there
     unheard_channels: tuple[int, ...] = ()  # 1 to 16: whose CC 7 or 11 stays at 0
@@ -79,11 +82,13 @@ class Summary:
         more = self.limited_db >= MOST_TOLD_DB
         decibels = f"{MOST_TOLD_DB:g} dB or more" if more else f"{self.limited_db:.1f} dB"
         channels, clipped = ", ".join(map(str, self.unheard_channels)), ", ".join(self.clipped)
+        lower = counted(self.lower_notes, "lower note")
         solves = counted(self.unconverged_solves, "friction solve")
         lost, fate = counted(self.lost_states, "time"), f"{FATE[self.policy]}{moved_hint}"
         lines = {
             f"channel 10 is percussion: {percussion} not played{drum_hint}": self.percussion_notes,
             f"{moved} outside {self.range}, {fate}": self.notes_out_of_range,
+            f"{lower} of chords are not played": self.lower_notes,
             f"no preset for the programs {programs}: ignored": programs,
             f"channel {channels}: CC 7 or 11 stays at 0: no note is heard": channels,
             f"the limiter lowered the highest peak by {decibels}; less gain keeps "
@@ -101,6 +106,7 @@ def summary_of(
     elapsed_s: float,
     peak: float,
     rms: float,
+    loudness_lufs: float | None,
     *,
     factor: float = 1.0,
     clipped: Sequence[str] = (),
@@ -119,6 +125,7 @@ def summary_of(
         real_time_factor=duration_s / elapsed_s,
         peak=peak,
         rms=rms,
+        loudness_lufs=loudness_lufs,
         notes_played=sum(part.notes_played for part in parts),
         notes_out_of_range=sum(part.notes_out_of_range for part in parts),
         range=range_text(players[0].player.notes),
@@ -132,6 +139,8 @@ def summary_of(
             sorted({each for one in players for each in one.player.unknown_programs})
         ),
         parts=parts,
+        timing_shaped=any(one.part.is_rubato for one in players),
+        lower_notes=sum(one.part.lower_notes for one in players),
         limited_db=limited_db(peak / factor, players[0].player.value("/output/limiter")),
         clipped=tuple(clipped),
         unheard_channels=tuple(sorted({each for one in players for each in _unheard(one)})),

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from yehu_server.errors import OutputError
+from yehu_server.errors import OutputError, ScoreError
 from yehu_server.rendering import PIPE
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance, Samples
@@ -19,7 +19,9 @@ from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
 from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.capture_writer import LiveCapture
+from yehu_server.scores.score import notes_of
 from yehu_server.util.files import error_reason, replace_any
+from yehu_server.util.loudness import IntegratedLoudness
 from yehu_server.util.sound_file import SoundWriter, sound_file
 
 Array = Any
@@ -156,7 +158,8 @@ def render(
 
     with contextlib.ExitStack() as stack:
         files = [stack.enter_context(opened(path)) for path in (target, *stems)]
-        takes = _takes(performance, len(files), progress, watch)
+        loudness = IntegratedLoudness(options.rate)
+        takes = _takes(performance, len(files), progress, watch, loudness)
         factor = 1.0
         if options.normalize:
             factor = write_normalized(takes, files, None if target is PIPE else target.parent)
@@ -164,6 +167,9 @@ def render(
             for take in takes:
                 for file, samples in zip(files, take, strict=True):
                     file.write(samples)
+        is_silent = not any(one.player.notes_played for one in performance.players)
+        if is_silent and any(notes_of(part.score) for part in parts):
+            raise ScoreError(f"{parts[0].score.name}: none of its notes is played")
     elapsed_s, file = time.perf_counter() - start, files[0]
     ends = options.subtype != "float"
     clipped = [path.name for path, one in zip(stems, files[1:], strict=True) if one.peak > 1.0]
@@ -173,16 +179,22 @@ def render(
         elapsed_s,
         file.peak,
         file.rms,
+        loudness.lufs(factor),
         factor=factor,
         clipped=clipped if ends else (),
     )
 
 
 def _takes(
-    performance: Performance, files: int, progress: ProgressCallback | None, watch: PlotData | None
+    performance: Performance,
+    files: int,
+    progress: ProgressCallback | None,
+    watch: PlotData | None,
+    loudness: IntegratedLoudness,
 ) -> Iterator[list[Samples]]:
     """Yield what goes to each of the files, block by block."""
     for samples in performance.blocks(progress):
+        loudness.add(samples)
         yield [samples, *performance.stems][:files]
         if watch is not None:
             watch.take(samples, performance.target_pitches)

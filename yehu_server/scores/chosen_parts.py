@@ -99,13 +99,20 @@ def others_line(written: Written, plays: Sequence[int]) -> str:
 def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
     """The parts of a score of MIDI that are asked for. Raises ScoreError where one is not there."""
     names = [part.name for part in score.parts]
-    return _only(score, [score.parts[number] for number in numbers_of(names, asked)])
+    try:
+        numbers = numbers_of(names, asked)
+    except ScoreError as error:
+        has_drums = any(note.channel == PERCUSSION_CHANNEL for note in score.notes)
+        more = "; percussion is no part: --channel 10 plays it" if has_drums else ""
+        raise ScoreError(f"{error}{more}") from None
+    return _only(score, [score.parts[number] for number in numbers])
 
 
 def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
     """A score with the notes of some of its parts alone, and the key switches that they have.
 
-    Switches in a track without notes are for all that play on their channel.
+    Switches in a track without notes are for all that play on their channel. Percussion stays, so
+    that it is counted: nobody plays it unasked.
     """
     find = finder_of(kept)
     places = {(note.channel, score.events[note.begins].track) for note in notes_of(score)}
@@ -118,7 +125,8 @@ def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
             is_own = event.track not in sounding or find(message.channel, event.track) is not None
             return is_own and message.channel in channels
         is_note = message.type == "note_on" and message.velocity > 0
-        return not is_note or find(message.channel, event.track) is not None
+        is_drum = is_note and message.channel == PERCUSSION_CHANNEL
+        return not is_note or is_drum or find(message.channel, event.track) is not None
 
     return replace(score, events=tuple(filter(is_kept, score.events)), parts=tuple(kept))
 

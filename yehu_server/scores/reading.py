@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
+from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,10 +15,11 @@ from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.playing.options import PlayingOptions
-from yehu_server.playing.stringing import notes_of
+from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
-from yehu_server.scores.key_switches import with_key_switches
+from yehu_server.scores.key_switches import with_key_switches, without_low_keys
+from yehu_server.scores.octaves import NoteSpan
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import (
     MAX_DURATION_H,
@@ -25,11 +27,13 @@ from yehu_server.scores.score import (
     ScoreEvent,
     check_duration,
     errors_name,
+    notes_of,
     says_mpe,
     seems_mpe,
 )
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.track import DamagedError
+from yehu_server.scores.tune_part import take_turns
 from yehu_server.scores.written.in_range import default_parts, moved
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import leading_notes, performed, shortest_s
@@ -41,10 +45,24 @@ def channels_with_notes(scores: Iterable[Score]) -> list[int]:
     return sorted({event.message.channel for event in _notes(scores)})
 
 
-def tracks_with_notes(scores: Iterable[Score]) -> list[int]:
-    """The tracks that have notes, counted from 1, in order; percussion does not count."""
-    notes = (event for event in _notes(scores) if event.message.channel != PERCUSSION_CHANNEL)
-    return sorted({event.track for event in notes})
+def tracks_with_notes(
+    scores: Iterable[Score], channels: Collection[int] = chosen_parts.MELODIC
+) -> list[int]:
+    """The tracks that have notes on some channels, counted from 1, in order."""
+    return sorted({event.track for event in _notes(scores) if event.message.channel in channels})
+
+
+def shares_channels(scores: Iterable[Score]) -> bool:
+    """Whether tracks that sound at once have notes on one channel; percussion does not count."""
+    for score in scores:
+        tracks: dict[int, dict[int, list[NoteSpan]]] = defaultdict(lambda: defaultdict(list))
+        for note in notes_of(score):
+            if note.channel in chosen_parts.MELODIC:
+                span = NoteSpan(note.start_s, note.end_s, (float(note.key),))
+                tracks[note.channel][score.events[note.begins].track].append(span)
+        if not all(take_turns([*each.values()]) for each in tracks.values()):
+            return True
+    return False
 
 
 def part_name(scores: Sequence[Score], channel: int | None = None, track: int | None = None) -> str:
@@ -121,6 +139,7 @@ class ReadOptions:
     # Whether all are played where none is named: else the one that carries the tune.
     all_parts: bool = False
     in_range: bool = True  # whether parts are moved by octaves as a whole, to fit the instrument
+    leaves_low_keys: bool = False  # whether keys far below a tune of a MIDI file are left out
     is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
     within: NoteRange = YEHU  # the notes of the instrument
     channels: Collection[int] | None = None  # of a MIDI file that are played: all but percussion
@@ -134,9 +153,10 @@ class ReadOptions:
         return cls(
             parts,
             all_parts=all_parts,
-            in_range=playing.policy is RangePolicy.TRANSPOSE and playing.tuning.has_octaves,
+            in_range=playing.policy is not RangePolicy.CLAMP and playing.tuning.has_octaves,
+            leaves_low_keys=playing.policy is RangePolicy.SKIP,
             is_mpe=playing.mapping.mpe,
-            within=notes_of(playing.quantities),
+            within=range_of(playing.quantities),
             channels=playing.channels,
             key_switches=playing.mapping.key_switches,
         )
@@ -220,6 +240,8 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
     played = chosen_parts.MELODIC if options.channels is None else options.channels
     played = range(16) if is_mpe else {*chosen_parts.MELODIC, *played}
     score = with_key_switches(score, options.key_switches, played)
+    if options.leaves_low_keys and not is_mpe:
+        score = without_low_keys(score, played, options.within)
     tune = score if is_mpe else chosen_parts.default_midi_part(score)
     delays = midi_delays(score, tune)
     if options.parts:

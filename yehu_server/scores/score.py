@@ -7,8 +7,8 @@ import errno
 import math
 import os
 from bisect import insort
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -242,6 +242,16 @@ def _paired(score: Score) -> Iterator[ScoreNote]:
             held[key] = begun
             found.append(begun)
     return map(ScoreNote._make, found)
+
+
+def without_notes(score: Score, notes: Collection[ScoreNote]) -> Score:
+    """A score without some of its notes, and what ends them; another strike of the key stays."""
+    if not notes:
+        return score
+    left = {note.begins for note in notes}
+    left |= {note.ends for note in notes} - {note.begins for note in score.notes}
+    events = (event for number, event in enumerate(score.events) if number not in left)
+    return replace(score, events=tuple(events))
 
 
 def says_mpe(score: Score) -> bool:

@@ -22,7 +22,8 @@ from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.errors import ScoreError
 from yehu_server.playing.sources import RESERVED
 from yehu_server.scores.capture import Capture, read_capture
-from yehu_server.scores.chosen_parts import finder_of, tune_of
+from yehu_server.scores.chosen_parts import MELODIC, finder_of, tune_of
+from yehu_server.scores.key_switches import low_keys
 from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
 from yehu_server.scores.score import (
@@ -56,6 +57,7 @@ TEMPI = range(60, 181)  # quarters a minute, candidates for the tempo of a captu
 OFF_BEAT, UNUSUAL = 0.03, 0.02
 SAME_TEMPO = 0.01  # share
 LEFT_OUT = {"pitchwheel": "pitch bends", "aftertouch": "pressure", "polytouch": "pressure"}
+CHORDS, PERCUSSION = UNPLAYED = "lower notes of chords", "notes of percussion"
 SELECTING = {0, 32, *RESERVED}  # of banks, parameters, modes
 
 
@@ -83,7 +85,11 @@ def read_as_written(
         written, lost = written_of_midi(score, tempo)
     # Chords are single lines here, and may look like a tune.
     tune = tune_of(score) if len(score.parts) == len(written.parts) else None
-    return replace(written, warnings=score.warnings, remarks=score.remarks, tune=tune), lost
+    remarks = score.remarks
+    if low := low_keys(score, MELODIC):
+        line = f"may be key switches, far below the tune: {len(low)} notes (--range skip)"
+        remarks = (*remarks, line)
+    return replace(written, warnings=score.warnings, remarks=remarks, tune=tune), lost
 
 
 def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, dict[str, int]]:
@@ -107,12 +113,12 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
             pitch = note.key + higher.get(note.begins, 0.0)
             voices[at][1].append(PlayedNote(begin, end, pitch, note.velocity))
     lost = Counter(filter(None, map(_left_out, score.events)))
-    lost["notes of percussion"] += percussion
+    lost[PERCUSSION] += percussion
     if by_frames:
         written, more = written_of_seconds(voices, tempo)
         return replace(written, title=score.name), {**+lost, **more}
     whole, chords = _written(voices, _tempi(score), score.metres, score.keys)
-    lost["lower notes of chords"] += chords
+    lost[CHORDS] += chords
     return replace(whole, title=score.name), dict(+lost)
 
 
@@ -176,7 +182,7 @@ def written_of_seconds(
         for name, heard in voices
     ]  # fmt: skip
     written, chords = _written(changed, (Tempo(Fraction(0), float(quarters)),), (COMMON_TIME,))
-    return written, {"lower notes of chords": chords} if chords else {}
+    return written, {CHORDS: chords} if chords else {}
 
 
 def _tempo_of(begins: Sequence[float]) -> float:

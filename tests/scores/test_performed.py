@@ -283,8 +283,8 @@ def test_marks_of_loudness_lie_farther_from_their_mean_by_phrasing():
         [each.velocity for each in notes_of(each)] for each in (score, phrased(score, 0.5))
     )
     mean = sum(written) / len(written)
-    assert sum(found[:4]) / 4 == pytest.approx(mean + 1.5 * (50.0 - mean), abs=3.0)
-    assert sum(found[8:]) / 4 == pytest.approx(mean + 1.5 * (96.0 - mean), abs=3.0)
+    assert sum(found[:4]) / 4 == pytest.approx(mean + 2.0 * (50.0 - mean), abs=3.0)
+    assert sum(found[8:]) / 4 == pytest.approx(mean + 2.0 * (96.0 - mean), abs=3.0)
     assert found[3:8] == sorted(found[3:8])
 
 

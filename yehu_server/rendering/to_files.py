@@ -214,22 +214,22 @@ def render_capture(
     is left.
     """
     performance = Performance(parts, replace(options, jobs=1, is_mono=False), reports=True)
-    wrong: list[str] = []
+    said: list[str] = []
     capture = LiveCapture(
-        performance.ensemble, target, wrong.append, has_room=not options.is_dry, overwrite=overwrite
+        performance.ensemble, target, said.append, has_room=not options.is_dry, overwrite=overwrite
     )
     try:
         for _ in performance.blocks(progress):
             capture.keep_up()
-            _check(wrong)
+            _check(capture, said)
     except BaseException:
         capture.discard()
         raise
     capture.close()
-    _check(wrong)
+    _check(capture, said)
     return performance
 
 
-def _check(wrong: list[str]) -> None:
-    if wrong:
-        raise OutputError(wrong[0])
+def _check(capture: LiveCapture, said: list[str]) -> None:
+    if not capture.is_whole:
+        raise OutputError(said[-1])

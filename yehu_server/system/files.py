@@ -30,8 +30,6 @@ def may_others_write(folder: Path) -> bool:
     Or put another in its place, who may write to one that it lies in; or its group may, unless that
     has no other member.
     """
-    if sys.platform == "win32":
-        return False
     real = folder.resolve()
     around = {*real.parents, *folder.absolute().parents}
     return _is_shared(real.stat()) or any(_is_shared(one.stat(), stat.S_ISVTX) for one in around)
@@ -39,6 +37,8 @@ def may_others_write(folder: Path) -> bool:
 
 def _is_shared(status: os.stat_result, sticky: int = 0) -> bool:
     """Whether others may write to a folder; with the bit `sticky` they replace nothing there."""
+    if sys.platform == "win32":
+        return False
     if status.st_uid not in (0, os.getuid()):
         return True
     if status.st_mode & sticky:
@@ -49,6 +49,8 @@ def _is_shared(status: os.stat_result, sticky: int = 0) -> bool:
 
 def _is_private(group: int) -> bool:
     """Whether a group is root's, or this user's alone, as many systems give each user one."""
+    if sys.platform == "win32":
+        return False
     import grp
     import pwd
 

@@ -20,8 +20,8 @@ def asked() -> NoteTables:
     """The calibration from the cache, or the one that stands for a measurement."""
     with (
         patch.object(HOME, "data_folder", lambda: scratch() / "cache"),
-        patch.object(HOME, "calibration_key", lambda *_: "fuzzed"),
-        patch.object(HOME, "calibrate", lambda *_, **__: CALIBRATION),
+        patch.object(HOME.calibration, "calibration_key", lambda *_: "fuzzed"),
+        patch.object(HOME.calibration, "calibrate", lambda *_, **__: CALIBRATION),
     ):
         return calibration_for(RATE)
 

@@ -48,9 +48,9 @@ def test_what_is_recorded_is_the_note_that_was_played_on_both_sides_of_a_room(fo
     assert np.isfinite(sound).all()
     assert np.abs(sound).max() > 0.03
     assert abs(off_by(sound, rate)) < 26.0  # as wide as the vibrato, of which it hears a turn or so
-    # They differ by the room and the body's sides, and are about as loud.
+    # They differ, by any correlation as the body sways, and are about as loud.
     left, right = sound.T.astype(float)
-    assert abs(np.corrcoef(left, right)[0, 1]) < 0.999  # any other of one note, as a swaying body has it
+    assert abs(np.corrcoef(left, right)[0, 1]) < 0.999
     assert 0.4 < np.mean(left**2) / np.mean(right**2) < 2.5  # one note, in a room that answers
 
 

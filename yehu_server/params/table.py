@@ -243,6 +243,12 @@ def read(values: Mapping[str, float], address: str) -> float:
     return value if plain == address else BY_ADDRESS[plain].to_unit(value)
 
 
+def full_address(name: str) -> str:
+    """The one address whose last part, or last parts, a name is; else the name itself."""
+    ends = [each for each in BY_ADDRESS if each.endswith(f"/{name.strip().lstrip('/')}")]
+    return ends[0] if len(ends) == 1 else name.strip()
+
+
 def assignment(text: str) -> tuple[str, float]:
     """Read ``ADDRESS=VALUE``.
 
@@ -253,8 +259,7 @@ def assignment(text: str) -> tuple[str, float]:
     address, equals, value = text.partition("=")
     if not equals:
         raise ParameterError(f"{text!r}: expected ADDRESS=VALUE, such as /playing/bow_position=0.1")
-    ending = [known for known in BY_ADDRESS if known.endswith(f"/{address.strip().lstrip('/')}")]
-    param = find(ending[0] if len(ending) == 1 else address.strip())
+    param = find(full_address(address))
     names = NAMES.get(param.address, {})
     try:
         number = names[value] if value in names else float(value)

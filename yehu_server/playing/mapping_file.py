@@ -13,7 +13,7 @@ from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.params.articulations import ARTICULATIONS, number_of
 from yehu_server.params.spec import Curve, Param
-from yehu_server.params.table import BY_ADDRESS, assignment, find
+from yehu_server.params.table import assignment, find, full_address
 from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.sources import CHANNELS
@@ -91,12 +91,6 @@ def settable_param(address: str, instead: str) -> Param:
     if param.player_controlled:
         raise ParameterError(f"{address} is moved by the player; {instead} under /playing")
     return param
-
-
-def full_address(name: str) -> str:
-    """The one address whose last part, or last parts, a name is; else the name itself."""
-    ends = [each for each in BY_ADDRESS if each.endswith(f"/{name.strip().lstrip('/')}")]
-    return ends[0] if len(ends) == 1 else name.strip()
 
 
 def setting(text: str) -> tuple[str, float]:

@@ -102,3 +102,29 @@ def test_a_long_open_string_is_stopped_on_the_other_for_its_vibrato():
         playing.play(0.01)
         strings[name] = int(playing.player["string"])
     assert [name for name, string in strings.items() if string == 0] == ["long"]
+
+
+def test_a_press_vibrato_varies_less_far_up_the_inner_string():
+    """Else a hard aftertouch raised B4 and C5 by over a semitone; on the outer string none does."""
+    inner = [pressed(note, string=1.0) for note in (66, 68, 69, 71, 72)]
+    assert inner[0] == pytest.approx(0.8)
+    assert inner == sorted(inner, reverse=True)
+    assert max(inner[3:]) <= 0.4
+    assert [pressed(note) for note in (74, 81, 89)] == pytest.approx([0.8] * 3)
+
+
+def test_an_open_string_that_a_press_stops_is_pressed_as_far_up_the_other():
+    playing = Playing(string=0.0)
+    playing.on(72)
+    playing.play(0.4)
+    playing.commands.write("/playing/vibrato_press", 0.8)
+    (found,) = playing.play(0.3, "value")
+    assert found[-1, SLOTS.vibrato_press] <= 0.4
+
+
+def pressed(note: int, **values: float) -> float:
+    """The variation of the finger force that a note is played with, asked for one of 0.8."""
+    playing = Playing(vibrato_press=0.8, **values)
+    playing.on(note)
+    (found,) = playing.play(0.3, "value")
+    return float(found[-1, SLOTS.vibrato_press])

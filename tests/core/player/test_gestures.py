@@ -191,3 +191,20 @@ def test_a_vibrato_fades_with_the_last_note_and_comes_in_anew_with_the_next():
     assert onset[-1] == 1.0
     playing.off(76)
     assert playing.play(1.0, "value")[0][-1, SLOTS.vibrato_onset] == 0.0
+
+
+def leaving_s(length: float, **values: float) -> float:
+    """How long after a note the bow moves on, until a tenth of its speed is left."""
+    playing = Playing(variation=0.0, **values)
+    playing.on(74)
+    playing.play(length)
+    playing.off(74)
+    (found,) = playing.play(0.4, "value")
+    speed = np.abs(found[:, SLOTS.bow_speed])
+    return float((speed > 0.1 * speed[0]).sum() * HOP / RATE)
+
+
+def test_the_bow_leaves_a_long_note_more_slowly_by_phrasing():
+    """Else there were holes of some 28 dB between phrases."""
+    assert leaving_s(1.5, phrasing=0.5) > 1.4 * leaving_s(0.15, phrasing=0.5)
+    assert leaving_s(1.5, phrasing=0.0) == leaving_s(0.15, phrasing=0.0)

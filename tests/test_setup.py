@@ -21,7 +21,10 @@ def checkout(tmp_path) -> Path:
     programs = root / ".venv" / "bin"
     programs.mkdir(parents=True)
     write(programs / "yehu-server", 'echo "bytecode: ${PYTHONDONTWRITEBYTECODE-kept}" "$@"')
-    settings = "global.extra-index-url='https://a.invalid https://b.invalid'\\nx.find-links='/w'"
+    settings = (
+        "global.index-url='https://a.invalid'\\nx.extra-index-url='https://b.invalid'"
+        "\\nx.find-links='/w /v'"
+    )
     write(
         programs / "python",
         f'case "$*" in *"config list"*) printf "{settings}\\n" ;; *" install "*) echo "pip $*" ;;'
@@ -50,15 +53,18 @@ def run(checkout: Path, code: str, **environment: str) -> str:
 
 @pytest.mark.parametrize("asked", ["$venv/bin/python", "false"], ids=["its own", "has none"])
 def test_uv_installs_where_pip_would_look(checkout, asked):
-    """Python's own pip is asked where it looks, or else one that comes into .venv for that."""
-    write(checkout / ".venv" / "bin" / "uv", 'echo "$UV_INDEX|$UV_FIND_LINKS|$*"')
+    """Python's own pip is asked where it looks, or else one that comes into .venv for that.
+
+    But not in its extra indexes: uv takes a version's files from one index alone, the first.
+    """
+    write(checkout / ".venv" / "bin" / "uv", 'echo "$UV_DEFAULT_INDEX|$UV_INDEX|$UV_FIND_LINKS|$*"')
     told = run(
         checkout,
         f'PATH=$venv/bin:$PATH; settings=$(settings_of_pip "{asked}")'
         '; install_packages --require-hashes -r x; cat "$log"',
     )
-    indexes, links, call = told.strip().split("|")
-    assert (indexes, links) == ("https://a.invalid https://b.invalid", "/w")
+    *where, call = told.strip().split("|")
+    assert where == ["https://a.invalid", "", "/w,/v"]
     assert call.startswith("pip install --python ")
     assert call.endswith("check out/.venv/bin/python --require-hashes -r x")
 

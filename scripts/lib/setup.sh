@@ -182,8 +182,7 @@ install_packages() {
     if command -v uv >/dev/null; then
         (
             eval "$settings"
-            # Hashes show which file is right, whichever index has it.
-            UV_INDEX_STRATEGY=unsafe-best-match uv pip install --python "$venv/bin/python" "$@"
+            uv pip install --python "$venv/bin/python" "$@"
         ) >"$log" 2>&1 </dev/null && return
     fi
     logged pip_install "$@"
@@ -200,18 +199,18 @@ venv_pip() {
     "$venv/bin/python" -I -m pip "$@"
 }
 
-# Prints pip's settings of indexes, as exports for uv. The Python that .venv was made with may have
-# a pip to ask.
+# Prints pip's settings of its index, as exports for uv, but for extra indexes: of a version that two
+# indexes have, uv sees one's files alone, where pip sees both (soundfile's without its library was
+# taken so). The Python that .venv was made with may have a pip to ask.
 settings_of_pip() {
     { "$1" -I -m pip config list 2>/dev/null || venv_pip config list 2>/dev/null; } |
         "$venv/bin/python" -I -c '
 import ast, shlex, sys
-names = {"index-url": "UV_DEFAULT_INDEX", "extra-index-url": "UV_INDEX", "find-links": "UV_FIND_LINKS"}
+names = {"index-url": "UV_DEFAULT_INDEX", "find-links": "UV_FIND_LINKS"}
 for line in sys.stdin:
     key, _, value = line.partition("=")
     if name := names.get(key.rpartition(".")[2]):
-        separator = "," if name == "UV_FIND_LINKS" else " "
-        print("export", name + "=" + shlex.quote(separator.join(ast.literal_eval(value).split())))
+        print("export", name + "=" + shlex.quote(",".join(ast.literal_eval(value).split())))
 '
 }
 

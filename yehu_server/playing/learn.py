@@ -155,6 +155,7 @@ class Learning:
         self._lock = threading.Lock()
         self._learner = Learner()
         self._found: Callable[[LearnedSource], None] | None = None
+        self._replaced: Callable[[], None] | None = None
         self._last = ("", 0.0)  # the source learned last, and when
         self.on_change: Callable[[], None] = lambda: None  # called where `waits` changes
 
@@ -168,10 +169,20 @@ class Learning:
         source, learned_s = self._last
         return self.waits or (source == address and time.monotonic() - learned_s < STILL_S)
 
-    def listen(self, found: Callable[[LearnedSource], None] | None) -> None:
-        """Call `found`, which must not block, once with the source moved next; None: stop."""
+    def listen(
+        self,
+        found: Callable[[LearnedSource], None] | None,
+        replaced: Callable[[], None] | None = None,
+    ) -> None:
+        """Call `found`, which must not block, once with the source moved next; None: stop.
+
+        `replaced`: called instead where another one listens before that.
+        """
         with self._lock:
-            self._learner, self._found = Learner(self._last), found
+            before = self._replaced if self.waits and found is not None else None
+            self._learner, self._found, self._replaced = Learner(self._last), found, replaced
+        if before is not None:
+            before()
         self.on_change()
 
     def hear_address(self, address: str, argument: float) -> None:

@@ -3,6 +3,7 @@
 import mido
 import pytest
 from midi_input import receive
+from wire import FakePeer
 
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc import context, learn_calls
@@ -46,6 +47,17 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
     turn(still, 21, 0, 127)  # only one thing is learned
     assert still.player.mapping == load("keyboard", user_first=True)
     assert not still.player.mapping.of("cc 21")
+
+
+def test_who_waits_is_told_that_another_learns_now(still, wire):
+    first = FakePeer(2)
+    still.take(wire.message("/yehu/learn", "vibrato"), first)
+    first.received()
+    assert answers(still.ask("/learn", "/output/gain"), "/learning") == [["/yehu/output/gain"]]
+    assert answers(first.received(), "/learning") == [[""]]
+    turn(still, 20, 10, 20, 64)
+    assert answers(first.received(), "/learned") == []
+    assert answers(still.peer.received(), "/learned")[0][0] == "/yehu/output/gain"
 
 
 def test_a_fader_learns_the_range_that_it_moves_through(still, wire, subtests):

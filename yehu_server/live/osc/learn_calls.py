@@ -45,7 +45,7 @@ class LearnCalls(GroupCalls):
                 learned = partial(self._learned, call.peer, target, source, soft, only)
                 self._write(call.peer, "/learn", learned)
 
-        self._player.learning.listen(found)
+        self._player.learning.listen(found, partial(self._send, call.peer, "/learning", ""))
         self._send(call.peer, "/learning", self._prefix + target)
 
     def _learned(

@@ -7,7 +7,7 @@ from wire import FakePeer
 
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc import context, learn_calls
-from yehu_server.playing import learn
+from yehu_server.playing import learner
 from yehu_server.playing.mapping import load
 
 
@@ -18,7 +18,7 @@ def _own_settings(config_home):
 
 @pytest.fixture(autouse=True)
 def _clock(monkeypatch, still_time):
-    for module in (learn, learn_calls):
+    for module in (learner, learn_calls):
         monkeypatch.setattr(module, "time", still_time)
 
 

@@ -137,7 +137,7 @@ class Stage:
         self.instrument = self.ensemble.first
         vars(self.instrument)["frame_at"] = lambda _ns: self.ensemble.frame
         player = player_of(0, options, own, delay_ms=0.0)
-        self._handler = OscHandler(
+        self.handler = OscHandler(
             CallContext([player], lambda _group: {}, str, str, print, lambda f: f(), lambda f: f())
         )
         view = SharedView(memory.handle)
@@ -149,7 +149,7 @@ class Stage:
         memory.close()
         self._players = {name: Sender(has_connection="TCP" in name) for name in OSC_KEYS}
         for sender in self._players.values():  # before others: they have a queue each
-            sender.play(self._handler, [pack("/yehu/ping")])
+            sender.play(self.handler, [pack("/yehu/ping")])
         count = (31 if kind else chance.choice((1, 6, 31))) if mix else 0
         self._mix = [Page(number + 1, count, chance, kind) for number in range(count)]
         mix = 0 if kind else mix
@@ -177,7 +177,7 @@ class Stage:
             notes = [
                 _note(chance.randrange(KEYS), chance.randrange(128)) for _ in range(self._bundle)
             ]
-            self._senders[n % len(self._senders)].play(self._handler, notes, at)
+            self._senders[n % len(self._senders)].play(self.handler, notes, at)
         for n in _due(1.0 / NOTE_S, begin, frames):
             self._play_note(n, begin)
 
@@ -191,7 +191,7 @@ class Stage:
             of_osc = _stepped(OSC_KEYS[name], n)
             self.asked[name].append((of_osc, frame))
             sender.play(
-                self._handler, [_note(of_osc, 90), _note(_stepped(OSC_KEYS[name], n - 1), 0)]
+                self.handler, [_note(of_osc, 90), _note(_stepped(OSC_KEYS[name], n - 1), 0)]
             )
         at, of_page = frame + (n % 2) * round(AHEAD_S * RATE), _stepped(PAGE_KEY, n)
         self.asked["page"].append((of_page, at))

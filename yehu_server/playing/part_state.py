@@ -60,7 +60,7 @@ def within_midi(what: str, value: float) -> float:
     return value
 
 
-@dataclass(frozen=True)
+@dataclass
 class Pending:
     """A direct write: its value, its number among all events, and its frame."""
 
@@ -147,6 +147,10 @@ class PartState:
         pending = self.pending.get(param.address)
         is_held = pending is not None and pending.is_held and self._waiting(param) is not None
         return is_held or bool(self.record["is_held"][INDEX[param.address]])
+
+    def refuses(self, address: str) -> bool:
+        """Whether a parameter is held, and none that plain writes take over."""
+        return not find(address).player_controlled and self.keeps(address)
 
     def expect(self, values: Values[str, float], frame: int | None) -> None:
         """Answer with these values, but for held ones, until the audio side has what sets them."""

@@ -166,7 +166,7 @@ class Player(PartState):
         if index == SECTION:
             accepted = min(float(round(accepted)), float(self.players))
         with self._lock:
-            if not param.player_controlled and not hold and self.keeps(address):
+            if not hold and self.refuses(address):
                 accepted = self.value(address)
             self._note(param.address, accepted, frame, is_held=hold)
             if param.address == "/bow/force":  # raw newtons are heard only without assist

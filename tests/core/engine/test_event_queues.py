@@ -97,7 +97,8 @@ def test_events_of_one_frame_come_as_far_as_they_may_cost_and_the_rest_later(kin
 def test_what_takes_long_costs_more() -> None:
     followed = cost(WRITE, INDEX["/playing/velocity"], 0.0)
     assert cost(EXPRESS, VOLUME, 0.0) < cost(WRITE, VOLUME, 0.0) < followed < cost(BEGIN, 1, 0.0)
-    assert cost(END, 1, 1.0) < cost(END, 1, 0.0)  # more keys end: the last does the work
+    # Of more keys that end the last does the work, less than where one begins among as many.
+    assert cost(END, 1, 1.0) < cost(END, 1, 0.0) < cost(BEGIN, 1, 0.0)
     assert cost(-5, 0, 0.0) == cost(99, 0, 0.0) == 1
     assert cost(WRITE, -1, 0.0) == cost(WRITE, 1 << 20, 0.0) == cost(WRITE, VOLUME, 0.0)
 

@@ -128,3 +128,19 @@ def test_a_pattern_sets_all_that_it_fits(still):
     assert heard == {"/yehu/bow/speed": 0.25, "/yehu/playing/speed": 0.25}
     heard = values(still.ask("/finger/?/pre[a-z]s", 2.0))
     assert heard == {f"/yehu/finger/{number}/press": 2.0 for number in (1, 2, 3, 4)}
+
+
+def test_a_message_alone_is_a_single_step_and_others_are_one_each(still, wire):
+    message, past = wire.message("/yehu/playing/pressure", 0.3), still.clock.time() - 1.0
+    assert list(still.handler.handle(message, still.peer)) == []
+    assert still.value("/playing/pressure") == pytest.approx(0.3)
+    for several in (wire.bundle(past, *[message] * 3), wire.message("/yehu/finger/?/press", 0.0)):
+        assert len([*still.handler.handle(several, still.peer)]) >= 2
+
+
+def test_a_held_parameter_refuses_other_values_and_says_where_it_stays(still):
+    still.player.hold("/playing/pressure", 0.5)
+    still.pass_time(0.01)
+    assert "error" not in str(still.ask("/playing/pressure", 0.5))
+    (error,) = still.ask("/playing/pressure", 99.0)
+    assert error.arguments[1] == "is held at 0.5 by --set; /yehu/release frees it"

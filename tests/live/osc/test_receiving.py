@@ -155,6 +155,40 @@ def test_a_burst_that_buffer_and_queue_hold_arrives_whole(
     assert ports.traffic.kernel_drops == 0
 
 
+@pytest.mark.parametrize("slice_ns", [0, 1 << 60])
+def test_what_comes_while_nothing_waits_is_handled_as_it_is_read_for_a_slice_of_time(
+    listen, client, keeper, monkeypatch, slice_ns
+):
+    """Then the rest is read first, so that the kernel has room."""
+    order, read = [], receiving.receive
+
+    def note_read(*of):
+        datagram = read(*of)
+        order.append("read")
+        return datagram
+
+    def note_handled(*_of):
+        order.append("handled")
+        yield from ()
+
+    monkeypatch.setattr(receiving, "SLICE_NS", slice_ns)
+    monkeypatch.setattr(receiving, "receive", note_read)
+    monkeypatch.setattr(keeper, "handle", note_handled)
+    ports = listen(start=False)
+    send_all(client(ports), numbered(3))
+    ports._read_datagrams(0)
+    ports._queue.work()
+    assert order == (["read", "handled"] * 3 if slice_ns else ["read"] * 3 + ["handled"] * 3)
+
+
+def test_a_port_is_one_peer_however_many_others_send(listen, monkeypatch):
+    monkeypatch.setattr(limits, "PEERS", 1)
+    ports = listen(start=False)
+    one, other = ports._peer((HOST, 1)), ports._peer((HOST, 2))
+    assert ports._peer((HOST, 1)) is one is not other
+    assert other.at(1) is one
+
+
 @on_linux
 def test_what_the_kernel_drops_is_counted(listen, client, keeper, until):
     ports = listen(start=False)

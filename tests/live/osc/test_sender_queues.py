@@ -1,14 +1,22 @@
 """Each sender of OSC has a queue of the callback to itself, as long as there are enough."""
 
+from collections import Counter
+
 from wire import FakePeer
 
 from yehu_server.core.engine.mailbox import SENDER_QUEUES
-from yehu_server.live.osc.sender_queues import OF_OTHERS, QUIET_S, SenderQueues
+from yehu_server.live.osc.sender_queues import (
+    CROWDED,
+    OF_CROWDERS,
+    OF_OTHERS,
+    QUIET_S,
+    SenderQueues,
+)
 from yehu_server.playing.player import SENDER
 
 RATE = 48000
 QUIET = round(QUIET_S * RATE)
-OWN = SENDER_QUEUES - 1
+OWN = SENDER_QUEUES - 2
 PEERS = [FakePeer(port) for port in range(OWN + 5)]
 
 
@@ -18,10 +26,10 @@ class Part:
     rate = RATE
 
     def __init__(self) -> None:
-        self.waiting: set[int] = set()
+        self.queues: Counter[int] = Counter()  # how many events wait in each
 
-    def has_waiting(self, sender: int) -> bool:
-        return sender in self.waiting
+    def waiting(self, sender: int) -> int:
+        return self.queues[sender]
 
 
 def test_senders_have_a_queue_each_and_keep_it_and_those_beyond_share_one():
@@ -37,13 +45,32 @@ def test_the_queue_of_who_was_quiet_for_longest_goes_to_the_next_once_it_is_drai
     queues = SenderQueues(parts)
     first = [queues.queue_of(PEERS[n], n) for n in range(OWN)]
     queues.queue_of(PEERS[0], 50)  # so that 1 is the quiet one
-    parts[1].waiting = {first[1]}
+    parts[1].queues[first[1]] = 1
     assert queues.queue_of(PEERS[OWN], QUIET) == OF_OTHERS  # it was heard a moment ago
     assert queues.queue_of(PEERS[OWN], QUIET + 2) == OF_OTHERS  # it has something waiting
-    parts[1].waiting.clear()
+    parts[1].queues.clear()
     assert queues.queue_of(PEERS[OWN], QUIET + 2) == first[1]
     assert queues.queue_of(PEERS[1], QUIET + 3) == first[2]
     assert queues.queue_of(PEERS[0], QUIET + 3) == first[0]
+
+
+def test_those_who_crowd_the_queue_of_others_have_another_until_it_is_empty():
+    part = Part()
+    queues = SenderQueues([part])
+    _, *flooding, honest = [peer for peer in PEERS if queues.queue_of(peer, 0) == OF_OTHERS]
+
+    def send() -> tuple[set[int], int]:
+        floods = {queues.queue_of(peer, 0) for _ in range(20) for peer in flooding}
+        return floods, queues.queue_of(honest, 0)
+
+    part.queues[OF_OTHERS] = CROWDED
+    assert send() == ({OF_OTHERS}, OF_OTHERS)
+    part.queues.update({OF_OTHERS: 1, OF_CROWDERS: 1})
+    assert send() == ({OF_CROWDERS}, OF_OTHERS)
+    part.queues[OF_OTHERS] = 0
+    assert send() == ({OF_CROWDERS}, OF_OTHERS)
+    part.queues.clear()
+    assert send() == ({OF_OTHERS}, OF_OTHERS)
 
 
 def test_what_a_sender_plays_waits_in_its_queue_at_once_or_ahead(still, wire, monkeypatch):

@@ -76,6 +76,8 @@ class Instrument:
         if self._stage is not None:
             self._rig["parts"][0, 0] = 1
             prepare_stage(self._stage[0], spec.rate, channels, has_room=False)
+        # The record of its part, of dtype ``midi.record.MIDI``, if it leads one.
+        self.midi: Any = self._rig["midi"][0]
         self.reset()
 
     def reset(self) -> None:
@@ -138,11 +140,6 @@ class Instrument:
         midi = self._rig["midi"][0]
         self._rig["tables"][0, midi["tables"]] = tables[0]
         midi["lower"] = CHANNELS_PER_PORT - 1 if tables["mpe"][0] else 0
-
-    @property
-    def midi(self) -> Any:
-        """The record of its part, of dtype ``midi.record.MIDI``, if it leads one."""
-        return self._rig["midi"][0]
 
     @property
     def tables(self) -> Any:
@@ -235,9 +232,9 @@ class Instrument:
         kind += sender << mailbox.KIND_BITS
         return bool(native.post.call(self.address, frame, kind, index, value, other))
 
-    def has_waiting(self, sender: int) -> bool:
-        """Whether events of a sender (see `post`) wait for their frame."""
-        return bool(self._rig["mail"]["pending"][0, mailbox.FIRST_SENDER + sender - 1])
+    def waiting(self, sender: int) -> int:
+        """Number of events that wait for their frame in the queue of a sender (see `post`)."""
+        return int(self._rig["mail"]["pending"][0, mailbox.FIRST_SENDER + sender - 1])
 
     def interpret_events(self) -> None:
         """Interpret what is posted for now, so that the record of the part has it.

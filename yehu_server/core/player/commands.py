@@ -45,8 +45,9 @@ KINDS = (
 )  # fmt: skip
 RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, DRAW, LIFT, STOP, RELEASE = range(len(KINDS))
 MAX_RAMP = 1e9  # frames of a ramp, ms of a glide
-# What each costs at most, of what EXPRESS does (some 0.3 us; bench/worst.py --mixes).
-COSTS = np.array([{"express": 1, "begin": 8, "end": 8, "slide": 5}.get(kind, 2) for kind in KINDS])
+# What each costs at most, of what EXPRESS does (some 0.3 us; bench/worst.py --mixes). A note
+# beside as many held keys as there may be takes 2.7 us.
+COSTS = np.array([{"express": 1, "begin": 9, "end": 8, "slide": 5}.get(kind, 2) for kind in KINDS])
 COST_TO_FOLLOW, COST_OF_ONE_OF_MANY = 5, 2  # a write that bow and finger follow; END of more keys
 IS_FOLLOWED = np.zeros(PARAMETER_COUNT, np.bool_)
 IS_FOLLOWED[[

@@ -22,7 +22,7 @@ class KindError(RefusedError):
         self.place, self.given = place, given
 
 
-@dataclass(frozen=True)
+@dataclass
 class Request:
     """A message to carry out: its arguments, its sender, and the frame at which it takes effect."""
 

@@ -75,23 +75,26 @@ class OscHandler:
         `frame`: of one message that waited for its time; without it, the packet takes effect as
         it arrived, and its bundles at their times.
         """
-        now, is_late, is_due = time.time(), False, frame is not None
+        now, is_late, is_due, is_first = time.time(), False, frame is not None, True
         frame = self._arrivals.frame_of(arrived_ns) if frame is None else frame
         try:
             for message in steps(packet):
-                if message is None:
+                if not is_first:  # between two, so that one alone is a single step
                     yield
+                is_first = False
+                if message is None:
                     continue
                 self.counts.messages += not is_due
                 if message.due_s is not None and message.due_s > now:
                     self._keep(message, peer)
-                    yield
                     continue
                 self.counts.late_bundles += message.due_s is not None and not is_late
                 is_late |= message.due_s is not None
                 call = Request(message.arguments, message.payload, peer, frame)
                 queue = self._queues.queue_of(peer, frame)
-                for action in self._actions(message.address, peer):
+                for number, action in enumerate(self._actions(message.address, peer)):
+                    if number:
+                        yield
                     sender = SENDER.set(queue)
                     try:  # one refusal does not stop the others that match a pattern
                         action(call)
@@ -99,7 +102,6 @@ class OscHandler:
                         self.context.send_error(peer, message.address, str(error))
                     finally:
                         SENDER.reset(sender)
-                    yield
         except PacketError as error:
             self.counts.malformed += 1
             self.clients.send_error(peer, "", f"malformed packet: {error}")

@@ -20,7 +20,7 @@ class PacketError(ValueError):
     """Bytes that are not an OSC packet."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Message:
     """An OSC message.
 

@@ -164,7 +164,10 @@ def answer_bucket(times: int = 1) -> TokenBucket:
 
 
 class UdpPeer(Peer):
-    """A sender of datagrams; bytes that it is sent are taken from each of its buckets."""
+    """A sender of datagrams; bytes that it is sent are taken from each of its buckets.
+
+    There is one of an address (`peer_at`): each message looks a dozen things up by its sender.
+    """
 
     def __init__(
         self,
@@ -172,19 +175,12 @@ class UdpPeer(Peer):
         address: Address,
         traffic: Traffic,
         buckets: Sequence[TokenBucket],
+        peer_at: Callable[[Address, Sequence[TokenBucket]], UdpPeer],
     ) -> None:
         self.host = address[0]
         self._socket, self._address = socket, address
-        self._hash = hash(address)  # computed once: each message needs it a dozen times
         self._traffic, self._buckets = traffic, buckets
-
-    def __eq__(self, other: object) -> bool:
-        """Whether another has the same address."""
-        return isinstance(other, UdpPeer) and other._address == self._address
-
-    def __hash__(self) -> int:
-        """Its address's."""
-        return self._hash
+        self._peer_at = peer_at
 
     @property
     def takes_more(self) -> bool:
@@ -206,8 +202,7 @@ class UdpPeer(Peer):
 
     def at(self, port: int) -> UdpPeer:
         """See `Peer`; bytes sent there count for this peer too."""
-        address = (self._address[0], port, *self._address[2:])
-        return UdpPeer(self._socket, address, self._traffic, self._buckets)
+        return self._peer_at((self._address[0], port, *self._address[2:]), self._buckets)
 
 
 class TcpPeer(Peer):

@@ -49,10 +49,9 @@ class PartCalls(GroupCalls):
         self._echo(call.peer, [address])
 
     def _set(self, call: Request, address: str, value: float) -> None:
-        kept = self._player.value(address) if self._player.keeps(address) else None
         accepted = self._player.set(address, value, frame=call.frame)
-        if kept is not None and accepted == kept != value:
-            raise RefusedError(f"is held at {kept:g} by --set; {self._prefix}/release frees it")
+        if accepted != value and self._player.refuses(address):
+            raise RefusedError(f"is held at {accepted:g} by --set; {self._prefix}/release frees it")
 
     def set_unit(self, call: Request, param: Param) -> None:
         """Set a parameter by 0 to 1 of its range."""

@@ -12,17 +12,19 @@ import selectors
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache, partial
+from weakref import WeakValueDictionary
 
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Address, Allowed, is_here
 from yehu_server.live.osc.handler import OscHandler
 from yehu_server.live.osc.listening_sockets import open_both
 from yehu_server.live.osc.peers import FramingError, Peer, TcpPeer, Traffic, UdpPeer, answer_bucket
-from yehu_server.live.osc.work_queue import Calls, WorkQueue
+from yehu_server.live.osc.work_queue import DONE, SLICE_NS, Calls, WorkQueue
 from yehu_server.system import clocks
 from yehu_server.system.sockets import prepare, receive
+from yehu_server.util.token_bucket import TokenBucket
 
 log = logging.getLogger(__name__)
 
@@ -49,7 +51,8 @@ class OscPorts:
         self._calls = Calls() if calls is None else calls
         self.call_soon = self._calls.soon
         self._accepts_again: float | None = None  # monotonic s; None: it accepts
-        self._peer = lru_cache(limits.PEERS)(self._new_peer)
+        self._peers: WeakValueDictionary[Address, UdpPeer] = WeakValueDictionary()
+        self._peer = lru_cache(limits.PEERS)(self._peer_of)
         self._to_all = answer_bucket(limits.ANSWERED_TO_ALL_HOSTS)
         self._to_host = lru_cache(limits.PEERS)(
             lambda _host: answer_bucket(limits.ANSWERED_TO_A_HOST)
@@ -127,7 +130,8 @@ class OscPorts:
     # -- UDP -----------------------------------------------------------------------------------
 
     def _read_datagrams(self, _events: int) -> None:
-        """Queue some of the waiting datagrams."""
+        """Read some of the waiting datagrams; handle them while nobody's wait, else queue them."""
+        until_ns = clocks.monotonic_ns() + SLICE_NS
         to_monotonic_ns = clocks.monotonic_ns() - time.time_ns()
         for _ in range(AT_ONCE):
             try:
@@ -137,9 +141,10 @@ class OscPorts:
             except OSError as error:  # an earlier answer was refused at its port
                 log.debug("OSC: %s", error)
                 continue
-            arrived_ns, (packet, address) = clocks.monotonic_ns(), datagram[:2]
+            now_ns, (packet, address) = clocks.monotonic_ns(), datagram[:2]
+            arrived_ns = now_ns
             if datagram.stamp_ns:
-                arrived_ns = min(datagram.stamp_ns + to_monotonic_ns, arrived_ns)
+                arrived_ns = min(datagram.stamp_ns + to_monotonic_ns, now_ns)
             self.traffic.kernel_drops = datagram.drops or self.traffic.kernel_drops
             is_own = address[1] == self.port and is_here(address[0])  # subscribed to itself
             if is_own or address[0] not in self._allowed:
@@ -148,13 +153,21 @@ class OscPorts:
             self.traffic.packets += 1
             peer = self._peer(address)
             steps = self._handler.handle(packet, peer, arrived_ns)
+            is_next = datagram.is_whole and not self._queue and now_ns < until_ns
+            if is_next and next(steps, DONE) is DONE:
+                continue
             if not (datagram.is_whole and self._queue.add(steps, peer, len(packet))):
                 self.traffic.excess += 1
 
-    def _new_peer(self, address: Address) -> UdpPeer:
+    def _peer_of(self, address: Address) -> UdpPeer:
         host = address[0]
         buckets = [answer_bucket()] if is_here(host) else [self._to_host(host), self._to_all]
-        return UdpPeer(self._udp, address, self.traffic, buckets)
+        return self._peer_at(address, buckets)
+
+    def _peer_at(self, address: Address, buckets: Sequence[TokenBucket]) -> UdpPeer:
+        """The peer of an address, as long as anything holds it; else a new one."""
+        new = UdpPeer(self._udp, address, self.traffic, buckets, self._peer_at)
+        return self._peers.setdefault(address, new)
 
     # -- TCP -----------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
 """A performance: instruments on a stage play the events of their parts, block by block."""
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,11 @@ from yehu_server.params.table import find
 from yehu_server.playing.parts import assemble, number_of_instruments
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
 from yehu_server.rendering.options import Options, Part
-from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.score import ScoreEvent, Setting, notes_of
 
 END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
 Samples = np.ndarray[Any, np.dtype[np.float32]]
+ProgressCallback = Callable[[float, float], None]  # seconds done, and those of the score
 QUIET = 1e-4  # 80 dB below full scale
 QUIET_S = 0.2  # the tail ends after this time of quiet
 LONGEST_TAIL_S = 5.0

@@ -13,11 +13,10 @@ import numpy as np
 from yehu_server.errors import OutputError, ScoreError
 from yehu_server.rendering import PIPE
 from yehu_server.rendering.options import Options, Part
-from yehu_server.rendering.performance import Performance, Samples
+from yehu_server.rendering.performance import Performance, ProgressCallback, Samples
 from yehu_server.rendering.pipe import sound_pipe
 from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
-from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.capture_writer import LiveCapture
 from yehu_server.scores.score import notes_of
 from yehu_server.util.files import error_reason, replace_any

@@ -24,7 +24,6 @@ import yehu_server as yehu
 from yehu_server.playing.options import LIVE
 from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.reading import read_any
-from yehu_server.scores.score import notes_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 RATE = 44100
@@ -73,7 +72,7 @@ def played_live(name: str, seed: int, *, dry: bool, phrasing: float | None = Non
     settings = LIVE if phrasing is None else {**LIVE, "/playing/phrasing": phrasing}
     preset = "vibrato" if dry else "vibrato+study"
     player = yehu.Instrument(RATE, preset=preset, settings=settings, stereo=not dry, seed=seed)
-    notes = [note for note in notes_of(read_any(EXAMPLES / name)) if note.end_s < LONGEST_S]
+    notes = [note for note in read_any(EXAMPLES / name).notes if note.end_s < LONGEST_S]
     for note in notes:
         player.note_on(note.key, velocity=80, at=note.start_s)
         player.note_off(note.key, at=note.end_s - 0.01)

@@ -48,10 +48,3 @@ def riff(inner: bytes, length: int | None = None, before: bytes = b"") -> bytes:
     body = b"RMID" + before + b"data" + struct.pack("<I", length) + inner
     body += b"\0" * (len(inner) % 2)
     return b"RIFF" + struct.pack("<I", len(body)) + body
-
-
-def mac_binary(inner: bytes, name: bytes = b"tune") -> bytes:
-    """A file as a Macintosh sent it: a header of 128 bytes, and padding."""
-    start = bytes([0, len(name)]) + name.ljust(63, b"\0") + b"Midi????"
-    start = start.ljust(83, b"\0") + struct.pack(">I", len(inner))
-    return start.ljust(128, b"\0") + inner + b"\0" * (-len(inner) % 128)

@@ -13,7 +13,7 @@ import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from midi_bytes import END, chunk, head, mac_binary, midi, number, off, on, riff, tempo
+from midi_bytes import END, chunk, head, midi, number, off, on, riff, tempo
 
 Notes = tuple[tuple[float, int], ...]  # beginnings (s) and keys
 
@@ -69,8 +69,6 @@ NO = "is not a MIDI file: "
 WRAPPED = (
     Case("riff", riff(WHOLE, before=b"LIST\x03\0\0\0abc\0")),
     Case("riff-of-a-wrong-length", riff(WHOLE, length=9999)),
-    Case("macbinary", mac_binary(WHOLE)),
-    Case("riff-in-macbinary", mac_binary(riff(WHOLE))),
     Case(
         "junk-before",
         b"From: a friend\nSubject: the tune\n\n" + WHOLE,

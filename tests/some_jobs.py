@@ -6,14 +6,12 @@ import time
 from pathlib import Path
 
 
-def double(task, tell):
-    tell(0.5, 1.0)
+def double(task):
     return 2 * task
 
 
-def fall(task, tell):
+def fall(task):
     """Die at -1; at a path, die at the first time only."""
-    del tell
     if task == -1:
         os.kill(os.getpid(), signal.SIGKILL)
     if isinstance(task, Path) and not task.exists():
@@ -22,9 +20,8 @@ def fall(task, tell):
     return os.getpid()
 
 
-def hold(task, tell):
+def hold(task):
     """Hold a file as long as it is not interrupted."""
-    del tell
     try:
         task.touch()
         time.sleep(600.0)
@@ -32,9 +29,8 @@ def hold(task, tell):
         task.unlink()
 
 
-def slow(task, tell):
+def slow(task):
     """Take some seconds; tell who did."""
-    del tell
     time.sleep(task)
     return os.getpid()
 

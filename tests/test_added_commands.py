@@ -1,32 +1,13 @@
-"""Commands of other packages of the project are found by an entry point, wherever all is."""
+"""Commands of other packages of the project are found by an entry point."""
 
 from pathlib import Path
 
 import forks
-import pytest
 
 import yehu_server
 from yehu_lab.cli import COMMANDS as OF_LABORATORY
 from yehu_server.cli import commands
 from yehu_server.cli.commands import COMMANDS, all_commands, module_of
-
-ENTRY_POINTS = """\
-[console_scripts]
-yehu-server = yehu_server.cli:main
-
-[yehu_server.commands]
-lab = yehu_lab.cli:COMMANDS
-
-[another.group]
-other = nowhere:NOTHING
-"""
-
-
-@pytest.fixture
-def elsewhere(tmp_path, monkeypatch) -> Path:
-    """A folder with the packages."""
-    monkeypatch.setattr(commands, "PACKAGE", tmp_path / "yehu_server")
-    return tmp_path
 
 
 def test_both_tables_are_whole_and_in_the_order_of_the_help():
@@ -41,19 +22,6 @@ def test_both_tables_are_whole_and_in_the_order_of_the_help():
         (Path(*yehu_server.__path__).parent / "yehu_lab" / "cli", OF_LABORATORY),
     ):
         assert all((folder / f"{name}.py").exists() for name in table)
-
-
-def test_an_installed_package_has_them_by_its_metadata(elsewhere):
-    (elsewhere / "yehu_server-0.1.0.dist-info").mkdir()
-    (elsewhere / "yehu_server-0.1.0.dist-info" / "entry_points.txt").write_text(ENTRY_POINTS)
-    assert all_commands()["sweep"] == ("yehu_lab.cli.sweep", OF_LABORATORY["sweep"])
-    assert len(all_commands()) == len(COMMANDS) + len(OF_LABORATORY)
-
-
-@pytest.mark.usefixtures("elsewhere")
-def test_a_copy_of_the_server_alone_has_its_own():
-    assert list(all_commands()) == list(COMMANDS)
-    assert module_of("sweep") is None
 
 
 def test_a_command_of_the_server_looks_for_no_other(monkeypatch):

@@ -6,12 +6,10 @@ import json
 import logging
 import os
 import sys
-import threading
-from types import SimpleNamespace
 
 import pytest
 
-from yehu_server.cli import _parser, main, serve, terminal
+from yehu_server.cli import main, terminal
 from yehu_server.cli.devices import devices_report
 from yehu_server.cli.report import bindings_table, mapping_report, status_line
 from yehu_server.errors import FIRST, LAST, one_line
@@ -154,26 +152,3 @@ def test_lines_of_one_cause_are_bounded_a_minute():
     assert told[terminal.MAX_REPEATS - 1].endswith("left out for a minute)")
     assert len(logged(2)) == len(told)  # each cause by itself
     assert len(logged(3, logging.DEBUG)) == 1000
-
-
-@pytest.mark.parametrize("words", [(), ("--verbose",)])
-def test_serve_tells_what_is_no_news_to_a_player_only_where_it_is_asked_to(
-    monkeypatch, caplog, words
-):
-    address = SimpleNamespace(host="127.0.0.1", port=9000)
-    server = SimpleNamespace(
-        output=SimpleNamespace(state=SimpleNamespace(problem="")),
-        osc=SimpleNamespace(**vars(address), traffic=SimpleNamespace(buffer_bytes=400_000)),
-        web=address,
-        pages=None,
-        start=lambda: None,
-        stop=lambda: None,
-        is_whole=True,
-    )
-    monkeypatch.setattr("yehu_server.live.server.Server", lambda *_: server)
-    arguments = _parser().parse_args(["serve", "--duration", "0", *words])
-    arguments.quiet = True
-    with caplog.at_level(arguments.log_level.upper(), logger="yehu_server"):
-        serve._serve(arguments, SimpleNamespace(requested=threading.Event(), server=None))
-    assert ("400 kB" in caplog.text) == bool(words)
-    assert "Ctrl-C ends" in caplog.text

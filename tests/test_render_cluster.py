@@ -116,8 +116,8 @@ class Here:
     def perform_all(self, perform, tasks):
         for job, task in enumerate(tasks):
             with contextlib.chdir(self._elsewhere):
-                result = perform(task, lambda _done, _total: None)
-            yield Event(job, 1.0, result=result)
+                result = perform(task)
+            yield Event(job, result=result)
 
 
 @pytest.fixture

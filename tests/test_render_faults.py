@@ -58,14 +58,6 @@ def test_a_song_is_rendered_alone(render):
     assert lengths == pytest.approx({None: 0.4, 1: 0.1, 2: 0.3}, abs=1e-4)
 
 
-def test_a_song_that_is_not_there_is_refused(render, tmp_path):
-    for song, told in ((3, "0.mid: has 2 songs: there is no song 3"), (0, "0 is not 1 or more")):
-        code, _, err = render(SONGS, options=("--song", song))
-        assert code == 2
-        assert told in err
-        assert not out(tmp_path)
-
-
 def test_the_longest_duration_is_of_each_file_and_of_all_together(render, tmp_path):
     second = midi(on(0, 67) + off(200, 67) + END)
     code, _, err = render(second, options=("--max-duration", 0.0002))

@@ -129,13 +129,6 @@ def test_each_sound_is_that_of_the_score_rendered_alone(once, command, tmp_path)
     assert alone.read_bytes() == (once[0] / "out" / "x" / "Y.kar.wav").read_bytes()
 
 
-def test_one_process_makes_the_same_bytes_as_two(folder, command):
-    command("render", folder / "in", "-o", folder / "other", *DRY, "--jobs", 1)
-    assert sounds(folder / "other") == sounds(folder / "out")
-    names = [each / "manifest.jsonl" for each in (folder / "out", folder / "other")]
-    assert names[0].read_bytes() == names[1].read_bytes()
-
-
 # ---------------------------------------------------------------- again
 
 

@@ -5,7 +5,6 @@ import json
 import pytest
 from musicxml_text import dynamics, note, score, slur, technical, tempo, words
 
-from yehu_server.scores.score import notes_of
 from yehu_server.scores.smf.reader import read_score
 
 BARS = (
@@ -66,7 +65,7 @@ def test_what_is_played_is_written_as_midi(command, refused, tune, tmp_path):
     code, _, err = command(*words)
     assert code == 0
     assert "/playing/direction" in err
-    assert [each.key for each in notes_of(read_score(target))] == [67, 69, 72, 66, 67]
+    assert [each.key for each in read_score(target).notes] == [67, 69, 72, 66, 67]
     assert "exists" in refused(*words)
     assert command(*words, "--overwrite")[0] == 0
     same = ("score", "show", target, "--export-midi", target, "--overwrite")

@@ -15,7 +15,7 @@ from measures.heard import HOP_S, Track, heard
 from measures.shares import Share, share_line
 from measures.take import Setup
 from yehu_server.scores.reading import performed_part, read_written
-from yehu_server.scores.score import ScoreNote, notes_of
+from yehu_server.scores.score import ScoreNote
 
 TUNES = Path(__file__).parents[2] / "examples" / "tunes"
 PHRASINGS = (0.0, 0.5)
@@ -63,7 +63,7 @@ def shape_of(path: Path, phrasing: float, rate: float, seed: int) -> dict[str, A
     on_time = yehu.render(path, phrasing=phrasing, rubato=0.0, dry=True, mono=True, seed=seed)
     sound = np.asarray(on_time.sound, np.float64)
     track = heard(sound, rate)
-    notes = notes_of(performed_part(read_written(path)))
+    notes = performed_part(read_written(path)).notes
     long = [note for note in notes if note.length_s >= LONG_S]
     rows = np.array([of_note(track, note) for note in long])
     return {

@@ -16,7 +16,6 @@ import yehu_server as yehu
 from pictures.saving import ROOT, save, save_sound
 from yehu_server.cli import main as command
 from yehu_server.scores.reading import part_of
-from yehu_server.scores.score import notes_of
 from yehu_server.scores.smf.reader import read_score
 
 SCORE = ROOT / "examples" / "mo_li_hua.mid"
@@ -46,7 +45,7 @@ def draw_all(figures: Path, sounds: Path) -> None:
     yehu.plot.spectrogram(mix[:end], RATE, pitch=False, top_hz=6000.0, ax=top)
     score = read_score(SCORE)
     for channel, (name, stem, row) in enumerate(zip(NAMES, stems, rows, strict=True)):
-        for note in notes_of(part_of(score, channel)):
+        for note in part_of(score, channel).notes:
             row.plot((note.start_s, note.end_s), (note.key, note.key), c="silver", lw=4)
         yehu.plot.pitch(stem[:end], RATE, ax=row)
         row.get_legend().remove()

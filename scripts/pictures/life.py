@@ -15,7 +15,6 @@ from measures.life import HOP_S, WINDOW_S, pitch_track
 import yehu_server as yehu
 from pictures.saving import ROOT, levels, save, save_sound
 from yehu_server.core.player.note_tables import frequency_hz
-from yehu_server.scores.score import notes_of
 from yehu_server.scores.smf.reader import read_score
 
 RATE = 44100
@@ -29,7 +28,7 @@ Notes = list[tuple[float, float, float]]  # pitch, start (s), duration (s)
 def phrase() -> Notes:
     """Return the notes of the tune's beginning, none overlapping."""
     tune = read_score(ROOT / "examples" / "shi_bei_jiu.mid")
-    notes = [note for note in notes_of(tune) if note.end_s < PHRASE_S]
+    notes = [note for note in tune.notes if note.end_s < PHRASE_S]
     starts = [note.start_s for note in notes] + [PHRASE_S]
     return [
         (note.key, start, min(note.end_s, after) - start)

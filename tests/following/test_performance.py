@@ -8,7 +8,7 @@ from yehu_server.following.heard import Heard
 from yehu_server.following.notes import strokes_of
 from yehu_server.following.performance import FollowOptions, dynamics_of, performed
 from yehu_server.scores.midi_export import midi_of_performance
-from yehu_server.scores.score import Setting, notes_of
+from yehu_server.scores.score import Setting
 from yehu_server.scores.smf.reader import read_score
 
 
@@ -70,7 +70,7 @@ def test_a_correction_moves_notes_to_the_tuning():
 
 def test_slurred_notes_overlap_and_new_strokes_do_not():
     found = played(held((np.nan, 9), (70.0, 80), (72.0, 80), (np.nan, 20), (72.0, 80), (np.nan, 9)))
-    first, second, third = notes_of(found.score)
+    first, second, third = found.score.notes
     assert (first.key, second.key, third.key) == (70, 72, 72)
     order = [event.message.type for event in found.score.events if event.message.type[:4] == "note"]
     assert order == ["note_on", "note_on", "note_off", "note_off", "note_on", "note_off"]
@@ -88,7 +88,7 @@ def test_its_midi_file_has_the_same_notes_and_bends(tmp_path):
     data, lost = midi_of_performance(found.score, 0.5)
     (tmp_path / "hum.mid").write_bytes(data)
     again = read_score(tmp_path / "hum.mid")
-    assert [note.key for note in notes_of(again)] == [note.key for note in notes_of(found.score)]
+    assert [note.key for note in again.notes] == [note.key for note in found.score.notes]
     wheel = [event.message.pitch for event in again.events if event.message.type == "pitchwheel"]
     assert wheel[0] * 24 / 8191 == pytest.approx(0.3, abs=0.01)
     assert set(lost) == {"/playing/attack", "/playing/phrasing", "/playing/variation"}

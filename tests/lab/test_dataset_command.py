@@ -174,7 +174,7 @@ def test_sounds_travel_where_the_folder_is_not_seen(made, tmp_path):
     description = replace(read_description(made / "d.toml"), count=2)
     [part] = making.parts_of(description, tmp_path / "out", "key")
     far = replace(part, folder=Path("/nowhere/at/all"), mark=Path("/nowhere/mark"))
-    told = making.perform(far, lambda _done, _total: None)
+    told = making.perform(far)
     assert len(told["files"]) == 4
     assert list(making.received(part, told)) == lines(made / "out")[:2]
     for name, data in results_in(tmp_path / "out").items():

@@ -1,10 +1,8 @@
 """Captures: written as commands are applied, readable whatever ends them."""
 
 import json
-import os
 import random
 from dataclasses import fields, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -136,17 +134,6 @@ def test_each_kind_of_command_is_read_to_the_bit(tmp_path, write):
         assert capture.commands.tolist() == commands, kind
         header = (capture.version, capture.rate, capture.frames, capture.warnings)
         assert header == (3, RATE, 9, [])
-
-
-def test_the_first_line_has_the_whole_beginning(tmp_path, write):
-    header = json.loads(write(tmp_path / "c").read_text().splitlines()[0])
-    (player,) = header["players"]
-    assert (header["rate"], header["room"], player["seed"]) == (RATE, False, 3)
-    tuned = {f"string_{i}": {"T": tension} for i, tension in enumerate(TENSIONS, start=1)}
-    assert player["quantities"] == tuned
-    assert header["build"] == build()
-    defaults = {param.address: param.default for param in TABLE}
-    assert player["values"] == {**defaults, "/engine/seed": 3.0}
 
 
 def measured(seed: int = 1) -> NoteTables:
@@ -504,15 +491,6 @@ def test_a_line_that_no_instrument_wrote_is_named_and_refused(tmp_path, write):
     refuse_lines(first_version(tmp_path / "first", MOVES[:1]), [*NO_RAMPS, *NO_FRAMES])
 
 
-def test_a_rate_that_is_none_is_refused(tmp_path, write):
-    path = write(tmp_path / "c", RAMPS, end=9001)
-    text = path.read_text()
-    for rate in (HUGE, "9" * 5000, "0", "-48000", "NaN", "1e999", "null", DEEP):
-        path.write_text(text.replace(f'"rate": {RATE}', f'"rate": {rate}'))
-        with pytest.raises(ScoreError):
-            read_capture(path)
-
-
 def test_a_capture_of_years_is_refused_unless_it_is_asked_for(tmp_path, write):
     for how in ({"end": 2**53}, {"end": 100, "gaps": [10**12]}):
         capture = read_capture(write(tmp_path / str(how), RAMPS, **how))
@@ -520,16 +498,6 @@ def test_a_capture_of_years_is_refused_unless_it_is_asked_for(tmp_path, write):
         with pytest.raises(ScoreError, match="--max-duration"):
             replay(capture, tmp_path / "x.wav", format_name="wav", subtype="16", max_duration_h=12)
         assert not (tmp_path / "x.wav").exists()
-
-
-def test_what_is_no_file_of_text_is_refused_at_once(tmp_path):
-    if hasattr(os, "mkfifo"):
-        os.mkfifo(tmp_path / "fifo")
-    (tmp_path / "long").write_bytes(b"[" * 10**6)
-    for path in (Path("/dev/zero"), tmp_path / "fifo", tmp_path, tmp_path / "long"):
-        with pytest.raises(ScoreError) as error:
-            read_capture(path)
-        assert str(error.value).startswith(f"{path}: ")
 
 
 def test_a_long_session_is_read_whole(tmp_path, monkeypatch, write):
@@ -613,6 +581,7 @@ def no_beginnings():
         *({name: REMOVED} for name in ("version", "rate", "room", "seed", "open_strings")),
         *({name: REMOVED} for name in ("players", "quantities")),
         *({name: REMOVED} for name in ("calibration", "bowing", "build", "values")),
+        *({"rate": rate} for rate in (0, -48000, 10**400, NAN, INFINITY, None, "48000")),
         *({"version": version} for version in (0, 4, 3.0, True, "3", None, [3], "3\n")),
         *({"seed": seed} for seed in (-1, 1.5, "3", None, True, 2**60, NAN)),
         *({"open_strings": when} for when in ("sometimes", 1, None, [], "a\nb")),

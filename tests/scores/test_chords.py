@@ -8,7 +8,6 @@ from midi_files import midi_file, notes
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Part
 from yehu_server.scores.reading import read_any
-from yehu_server.scores.score import notes_of
 from yehu_server.scores.transcription import read_as_written
 
 PLAIN = PlayingOptions(phrasing=0.0, rubato=0.0)
@@ -21,7 +20,7 @@ def played(tmp_path):
     def run(*events, playing: PlayingOptions = PLAIN):
         path = midi_file(tmp_path / "chords.mid", notes(*events))
         part = Part.shaped([read_any(path)], playing)
-        keys = [note.key for note in notes_of(part.score)]
+        keys = [note.key for note in part.score.notes]
         if playing is PLAIN:
             written, lost = read_as_written(path)
             shown = [note.pitch for note in written.parts[0].notes]

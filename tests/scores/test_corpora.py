@@ -13,21 +13,18 @@ import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
-from xml.etree import ElementTree as ET
 
 import pytest
-from scores.edited_scores import edited_abc, edited_xml
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.abc.reader import read_abc
-from yehu_server.scores.musicxml.reader import read_musicxml, unpacked
+from yehu_server.scores.musicxml.reader import read_musicxml
 from yehu_server.scores.written.notated import Written
 
 CORPORA = os.environ.get("YEHU_CORPORA", "")
 PYTHON = os.environ.get("YEHU_READERS", sys.executable)
 SEED = int(os.environ.get("YEHU_CORPORA_SEED", "1"))
 MOST = 50  # scores of a corpus
-EDITED, MOST_EDITED_BYTES = 20, 1 << 18  # of a corpus that are edited
 MOST_BYTES = 1 << 20  # of a file: music21 takes minutes for more
 NEAR = 0.06  # quarters
 ENOUGH = 0.95  # of the files in which two readers agree; docs/scores.md names the others
@@ -142,43 +139,3 @@ def test_scores_of_others_are_read_as_two_readers_agree(subtests, tmp_path):
             with subtests.test(f"{corpus.name} {kind}"):
                 assert len(differ) <= max((1.0 - ENOUGH) * table["both agree"], 1), differ
     assert counts["both"] > 0
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not CORPORA, reason="YEHU_CORPORA names no folder of corpora")
-def test_edited_scores_are_read_as_two_readers_agree(subtests, tmp_path):
-    """With a field or an element more, in another encoding, a voice moved; others read UTF-8."""
-    for corpus in sorted(path for path in Path(CORPORA).iterdir() if path.is_dir()):
-        chance, cases = random.Random(SEED), []
-        for name, path, text in scores_of(corpus):
-            data = b"" if text else path.read_bytes()
-            data = unpacked(data) if data.startswith(b"PK") else data
-            if len(cases) == EDITED or len(data) > MOST_EDITED_BYTES:
-                continue
-            try:
-                what, said, own = edited_abc(text, chance) if text else edited_xml(data, chance)
-            except (ET.ParseError, LookupError, StopIteration):  # nothing that could be edited
-                continue
-            file = tmp_path / f"{len(cases)}.{'abc' if text else 'musicxml'}"
-            file.write_bytes(own)
-            plain = tmp_path / f"{len(cases)}.xml"
-            plain.write_bytes(said.encode() if isinstance(said, str) else said)
-            try:
-                ours = notes_of(read_abc(file) if text else read_musicxml(file))
-            except ScoreError as error:
-                ours = [] if "no notes" in str(error) else str(error)
-            cases.append((f"{name}: {what}", ours, said if text else str(plain)))
-        names = READERS["abc" if text else "xml"]
-        files = [file for _, _, file in cases]
-        one, other = (played_by(reader, files) or [None] * len(files) for reader in names)
-        both = [
-            (what, ours, first)
-            for (what, ours, _), first, second in zip(cases, one, other, strict=True)
-            if first is not None and second is not None and agree(first, second)
-        ]
-        wrong = [
-            what for what, ours, first in both if isinstance(ours, str) or not agree(ours, first)
-        ]
-        print(corpus.name, len(cases), "edited, both agree on", len(both), wrong)  # noqa: T201
-        with subtests.test(corpus.name):
-            assert len(wrong) <= max((1.0 - ENOUGH) * len(both), 1), wrong

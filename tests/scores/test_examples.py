@@ -59,30 +59,6 @@ def test_a_yehu_can_play_it(scores, name):
     assert not sounding
 
 
-def test_the_mpe_phrase_begins_with_its_zone_and_gives_each_note_its_own_bend_touch_and_bow(scores):
-    score = scores["mpe_phrase"]
-    opening = [event.message for event in score.events[:3]]
-    assert [(word.channel, word.control, word.value) for word in opening] == [
-        (MASTER, 101, 0),
-        (MASTER, 100, 6),
-        (MASTER, 6, 15),
-    ]
-    notes = of(score, "note_on")
-    channels = [event.message.channel for event in notes]
-    assert channels == [MEMBERS[number % 15] for number in range(len(channels))]
-    for on in notes:
-        before = {
-            event.message.type
-            for event in score.events[: score.events.index(on)]
-            if (event.time_s, event.message.channel) == (on.time_s, on.message.channel)
-        }
-        assert before == {"pitchwheel", "aftertouch", "control_change"}
-    master = [event for event in of(score, "pitchwheel") if event.message.channel == MASTER]
-    assert all(event.time_s >= notes[-1].time_s for event in master[1:])
-    assert min(event.message.pitch for event in master) == -8192
-    assert master[-1].message.pitch == 0
-
-
 def test_every_phrase_is_understood_and_lies_within_the_yehu():
     wrong = []
     phrases = sorted((SHIPPED / "phrases").glob("*.jianpu"))

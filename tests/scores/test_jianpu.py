@@ -9,7 +9,6 @@ import pytest
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.reader import MAX_BYTES, parse_jianpu, read_jianpu
-from yehu_server.scores.score import notes_of
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.notated import Note, Written
 from yehu_server.scores.written.performed import performed
@@ -59,10 +58,10 @@ def test_the_example_tune_has_the_notes_of_its_midi_file():
     score = read_jianpu(ROOT / "examples" / "shi_bei_jiu.jianpu")
     assert not score.unknown
     assert not score.warnings
-    there, here = notes_of(midi), score.parts[0].notes
+    there, here = midi.notes, score.parts[0].notes
     assert [note.pitch for note in here] == [note.key for note in there]
     assert [float(note.beat) for note in here] == [note.beat for note in there]
-    played = notes_of(performed(score))
+    played = performed(score).notes
     for mine, theirs in zip(played, there, strict=True):
         assert mine.start_s == pytest.approx(theirs.start_s, abs=1e-5)
         # between strokes the MIDI file leaves 14 ticks, after a phrase 30

@@ -15,7 +15,7 @@ from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.to_files import render
 from yehu_server.scores.reading import ReadOptions, part_of, read_any
-from yehu_server.scores.score import Score, notes_of
+from yehu_server.scores.score import Score
 from yehu_server.scores.transcription import read_as_written
 
 PLAYING = PlayingOptions(mapping=load("keyboard-articulations")).shaping(0.5)
@@ -73,7 +73,7 @@ def test_a_channel_of_key_switches_is_no_part_and_moves_no_other(read):
     """Nor do the switches of parts that are not played choose anything."""
     score = read(*switches(2), *tune(12))
     assert [part.channel for part in score.parts] == [0]
-    assert {note.channel for note in notes_of(score)} == {0}
+    assert {note.channel for note in score.notes} == {0}
     low = [(at + 0.01, message) for at, message in tune(12, channel=2)]
     chosen = read(*tune(), *low, *switches(2))
     assert chosen.remarks[1].startswith("plays ")
@@ -84,22 +84,22 @@ def test_a_channel_of_key_switches_is_no_part_and_moves_no_other(read):
         0,
         9,
     ]
-    assert [note.key for note in notes_of(second)] == [key for *_, key in TUNE]
+    assert [note.key for note in second.notes] == [key for *_, key in TUNE]
 
 
 def test_other_mappings_and_percussion_have_notes_there(read):
     usual = replace(PLAYING, mapping=load("keyboard"))
-    assert len(notes_of(read(*switches(), *tune(), playing=usual))) == len(TUNE) + len(CHOSEN)
-    assert len(notes_of(read(*switches(10), *tune()))) == len(TUNE) + len(CHOSEN)
+    assert len(read(*switches(), *tune(), playing=usual).notes) == len(TUNE) + len(CHOSEN)
+    assert len(read(*switches(10), *tune()).notes) == len(TUNE) + len(CHOSEN)
     drummer = replace(PLAYING, channels=frozenset({0, 9}))
-    assert len(notes_of(read(*switches(10), *tune(), playing=drummer))) == len(TUNE)
+    assert len(read(*switches(10), *tune(), playing=drummer).notes) == len(TUNE)
 
 
 def test_keys_of_another_library_far_below_are_left_out_and_the_tune_moves(read, tmp_path):
     """Those of a mapping are read before."""
     skips = replace(PLAYING, mapping=load("keyboard"), policy=RangePolicy.SKIP)
     score = read(*switches(), *tune(12), playing=skips)
-    assert [note.key for note in notes_of(score)] == [key for *_, key in TUNE]
+    assert [note.key for note in score.notes] == [key for *_, key in TUNE]
     assert score.remarks[0] == "notes far below the tune left out, as key switches: 2"
     assert "an octave up" in score.remarks[1]
     shown, _ = read_as_written(tmp_path / "tune.mid")

@@ -7,7 +7,7 @@ import mido
 import pytest
 
 from yehu_server.scores.midi_export import BEND_RANGE, TICKS, midi_file
-from yehu_server.scores.score import Metre, notes_of
+from yehu_server.scores.score import Metre
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Span, Tempo, Written
 from yehu_server.scores.written.performed import performed
@@ -45,7 +45,7 @@ def test_the_notes_read_again_are_those_that_are_played(export):
     )
     assert not again.warnings
     assert not lost
-    for one, other in zip(notes_of(played), notes_of(again), strict=True):
+    for one, other in zip(played.notes, again.notes, strict=True):
         assert (one.key, one.velocity) == (other.key, other.velocity)
         assert other.start_s == pytest.approx(one.start_s, abs=2e-3)
         assert other.end_s == pytest.approx(one.end_s, abs=2e-3)
@@ -53,7 +53,7 @@ def test_the_notes_read_again_are_those_that_are_played(export):
 
 def test_bars_and_beats_line_up_with_the_score(export):
     _, again, file, _ = export(*(note(n, 1, 67) for n in range(7)))
-    assert [each.beat for each in notes_of(again)] == list(range(7))
+    assert [each.beat for each in again.notes] == list(range(7))
     assert file.ticks_per_beat == TICKS
     signatures = [
         (m.numerator, m.denominator) for m in file.tracks[0] if m.type == "time_signature"
@@ -82,5 +82,5 @@ def test_bends_and_slides_are_in_the_file(export):
     of_range = [move for move in moves if move[0] in (101, 100, 6, 38)]
     assert of_range == [(101, 0), (100, 0), (6, BEND_RANGE), (38, 0)]  # RPN 0, semitones and cents
     assert controls(file, 65) == [127, 0]
-    assert notes_of(again)[1].start_s < 2 * 60 / 90
+    assert again.notes[1].start_s < 2 * 60 / 90
     assert lost == {}

@@ -8,7 +8,6 @@ from musicxml_text import note, score
 from yehu_server.errors import ScoreError
 from yehu_server.scores.octaves import NoteSpan, octaves_of
 from yehu_server.scores.reading import ReadOptions, percussion_notes, read_any
-from yehu_server.scores.score import notes_of
 from yehu_server.scores.tune_part import OVERLAP, melodic_part, take_turns
 
 LOW = [60, 62, 64, 65, 67]
@@ -53,7 +52,7 @@ def duet(tmp_path):
 
 
 def keys(played) -> list[int]:
-    return [each.key for each in notes_of(played)]
+    return [each.key for each in played.notes]
 
 
 def test_a_written_score_plays_its_first_part_in_one_piece(duet):
@@ -105,7 +104,7 @@ def test_tracks_of_a_midi_file_are_moved_each_as_a_whole(file):
     bass, other = notes(40, 43, channel=1), notes(70, channel=2)
     tracks = file(Flute=notes(*LOW), Cello=bass, _=other)
     played = read_any(tracks, ReadOptions(all_parts=True))
-    by_channel = [[each.key for each in notes_of(played) if each.channel == n] for n in range(3)]
+    by_channel = [[each.key for each in played.notes if each.channel == n] for n in range(3)]
     assert by_channel == [[72, 74, 76, 77, 79], [76, 79], [70]]
     expected = (
         "moved to fit F4 to F6: Flute an octave up; Cello three octaves up"
@@ -122,7 +121,7 @@ def test_percussion_is_counted_beside_the_part_that_plays_and_is_no_part(file):
     song = file(Lead=notes(70, 72), Pad=notes(66, channel=1), Drums=notes(38, 40, channel=9))
     score = read_any(song, ReadOptions(("Lead",)))
     assert percussion_notes([score]) == 2
-    assert [each.key for each in notes_of(score) if each.channel != 9] == [70, 72]
+    assert [each.key for each in score.notes if each.channel != 9] == [70, 72]
     with pytest.raises(ScoreError, match=r"no part Drums.*--channel 10 plays it"):
         read_any(song, ReadOptions(("Drums",)))
 

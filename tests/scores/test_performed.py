@@ -10,7 +10,7 @@ from shaping import phrased
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import NUMBER
 from yehu_server.params.table import find
-from yehu_server.scores.score import Setting, notes_of
+from yehu_server.scores.score import Setting
 from yehu_server.scores.written import performed as performing
 from yehu_server.scores.written.mark_settings import PLACES, QUICK_TREMOLO
 from yehu_server.scores.written.notated import (
@@ -78,7 +78,7 @@ def four(number, *marks) -> list[Note]:
 
 def test_plain_notes_sound_for_their_full_length_at_the_tempo():
     score = play(*FOUR)
-    assert [(each.start_s, each.end_s, each.key) for each in notes_of(score)] == [
+    assert [(each.start_s, each.end_s, each.key) for each in score.notes] == [
         (n * QUARTER_S, (n + 1) * QUARTER_S, 67 + 2 * n) for n in range(4)
     ]
     assert {event.message.type for event in score.events} == {"note_on", "note_off"}
@@ -87,10 +87,10 @@ def test_plain_notes_sound_for_their_full_length_at_the_tempo():
 
 def test_a_tempo_holds_from_its_beat_on_and_its_change_is_gradual_and_complete_at_its_end():
     score = play(*FOUR, tempi=(Tempo(Fraction(0), 120.0), Tempo(Fraction(2), 60.0)))
-    assert [each.start_s for each in notes_of(score)] == [0.0, 0.5, 1.0, 2.0]
+    assert [each.start_s for each in score.notes] == [0.0, 0.5, 1.0, 2.0]
     notes = [note(n, 1, 67) for n in range(12)]
     for name, share in (("ritardando", 0.7), ("accelerando", 1.25)):
-        starts = [each.start_s for each in notes_of(play(*notes, spans=[span(name, 0, 8)]))]
+        starts = [each.start_s for each in play(*notes, spans=[span(name, 0, 8)]).notes]
         steps = [b - a for a, b in pairwise(starts)]
         assert steps[:8] == sorted(steps[:8], reverse=share > 1.0)
         assert len({round(step, 6) for step in steps[:8]}) == 8
@@ -102,22 +102,22 @@ def test_a_fermata_holds_its_note_and_lets_all_parts_wait():
     other = (note(0, 3, 60), note(3, 1, 62))
     parts = (Part("", notes), Part("", other))
     score = performed(Written(parts, STEADY))
-    held = [each for each in notes_of(score) if each.key == 69]
+    held = [each for each in score.notes if each.key == 69]
     assert held[0].length_s == pytest.approx(1.8 * QUARTER_S)
-    assert [each.start_s for each in notes_of(score) if each.key == 62] == [
+    assert [each.start_s for each in score.notes if each.key == 62] == [
         pytest.approx(3.8 * QUARTER_S)
     ]
 
 
 def test_a_caesura_is_a_silence():
-    before, after = notes_of(play(*four(1, "caesura")))[1:3]
+    before, after = play(*four(1, "caesura")).notes[1:3]
     assert before.length_s == pytest.approx(QUARTER_S)
     assert after.start_s - before.end_s == pytest.approx(0.4)
 
 
 def overlaps(score) -> list[bool]:
     """Of each two notes, whether the first sounds into the second."""
-    return [one.end_s > other.start_s for one, other in pairwise(notes_of(score))]
+    return [one.end_s > other.start_s for one, other in pairwise(score.notes)]
 
 
 # -- strokes ------------------------------------------------------------------------------------
@@ -133,7 +133,7 @@ def test_slurred_notes_overlap_and_others_do_not():
 
 def test_a_repeated_note_under_a_slur_goes_on_in_the_same_direction():
     score = play(note(0, 1, 67), note(1, 1, 67), spans=[span("slur", 0, 1)])
-    notes = notes_of(score)
+    notes = score.notes
     assert notes[0].end_s <= notes[1].start_s
     directions = settings(score, "/playing/direction")
     assert directions[0][0] == 0.0
@@ -143,12 +143,12 @@ def test_a_repeated_note_under_a_slur_goes_on_in_the_same_direction():
 def test_short_marks_shorten_and_as_a_word_all_notes_but_slurred_ones():
     shares = {"staccato": 0.5, "staccatissimo": 0.3, "spiccato": 0.35, "tenuto": 1.0}
     for mark, share in shares.items():
-        notes = notes_of(play(*four(1, mark)))
+        notes = play(*four(1, mark)).notes
         assert notes[1].length_s == pytest.approx(share * QUARTER_S), mark
         assert notes[2].start_s == 2 * QUARTER_S
     for end in ("non-staccato", "ordinary"):
         signs = [sign(0, "staccato"), sign(3, end)]
-        notes = notes_of(play(*FOUR, signs=signs, spans=[span("slur", 1, 2)]))
+        notes = play(*FOUR, signs=signs, spans=[span("slur", 1, 2)]).notes
         assert [round(each.length_s / QUARTER_S, 1) for each in notes] == [0.5, 1.0, 1.0, 1.0]
 
 
@@ -212,15 +212,15 @@ def test_an_open_string_at_its_pitch_is_played_open_and_with_a_finger_on_the_oth
 
 def test_dynamics_are_velocities_and_a_forced_note_is_loud_alone():
     for name, velocity in DYNAMICS.items():
-        notes = notes_of(play(*FOUR, signs=[sign(1, name)]))
+        notes = play(*FOUR, signs=[sign(1, name)]).notes
         assert [each.velocity for each in notes] == [80, *[velocity] * 3], name
-    notes = notes_of(play(*FOUR, signs=[sign(0, "p"), sign(1, "fp")]))
+    notes = play(*FOUR, signs=[sign(0, "p"), sign(1, "fp")]).notes
     assert [each.velocity for each in notes] == [50, 96, 50, 50]
 
 
 def test_accents_are_louder_by_their_strength():
     velocities = [
-        notes_of(play(*four(1, mark)))[1].velocity
+        play(*four(1, mark)).notes[1].velocity
         for mark in ("unstress", "stress", "accent", "marcato")
     ]
     assert velocities == sorted(velocities)
@@ -231,7 +231,7 @@ def test_a_hairpin_leads_to_the_dynamic_after_it():
     score = play(
         *FOUR, note(4, 1, 67), signs=[sign(0, "p"), sign(4, "f")], spans=[span("crescendo", 0, 4)]
     )
-    velocities = [each.velocity for each in notes_of(score)]
+    velocities = [each.velocity for each in score.notes]
     assert velocities == sorted(velocities)
     assert velocities[-1] == 96
     assert velocities[1] == pytest.approx(50 + 46 * 2 / 4, abs=1)  # its end is its loudest moment
@@ -239,7 +239,7 @@ def test_a_hairpin_leads_to_the_dynamic_after_it():
 
 def levels_db(score) -> list[tuple[float, float]]:
     """The level (dB) as time goes, by velocities and controller 11."""
-    velocities = {note.start_s: note.velocity for note in notes_of(score)}
+    velocities = {note.start_s: note.velocity for note in score.notes}
     times = sorted({*velocities, *(time for time, _ in expressions(score))})
     found, velocity, expression = [], 80, 127
     for time in times:
@@ -265,7 +265,7 @@ def test_a_dynamic_within_a_held_note_is_no_jump():
 def test_between_marks_of_loudness_phrases_are_shaped_less():
     notes = [note(n, 1, 67) for n in range(8)]
     bare, marked = (
-        [each.velocity for each in notes_of(phrased(play(*notes, signs=signs), 0.5))]
+        [each.velocity for each in phrased(play(*notes, signs=signs), 0.5).notes]
         for signs in ([], [sign(0, "mf")])
     )
     assert (
@@ -280,7 +280,7 @@ def test_marks_of_loudness_lie_farther_from_their_mean_by_phrasing():
     signs, spans = [sign(0, "p"), sign(8, "f")], [span("crescendo", 4, 8)]
     score = play(*notes, signs=signs, spans=spans)
     written, found = (
-        [each.velocity for each in notes_of(each)] for each in (score, phrased(score, 0.5))
+        [each.velocity for each in each.notes] for each in (score, phrased(score, 0.5))
     )
     mean = sum(written) / len(written)
     assert sum(found[:4]) / 4 == pytest.approx(mean + 2.0 * (50.0 - mean), abs=3.0)
@@ -292,7 +292,7 @@ def test_marks_of_loudness_lie_farther_from_their_mean_by_phrasing():
 
 
 def test_a_trill_holds_its_note_and_taps_the_other_under_one_bow():
-    main, *taps = notes_of(play(note(0, 4, 67, Mark("trill", 1.0))))
+    main, *taps = play(note(0, 4, 67, Mark("trill", 1.0))).notes
     assert (main.key, main.start_s, main.end_s) == (67, 0.0, 2.0)
     assert {tap.key for tap in taps} == {68}
     assert 10 <= len(taps) <= 16
@@ -306,16 +306,14 @@ def test_ornaments_tap_their_notes_while_the_own_is_held():
         Mark("turn", 2.0): [67, 69, 66],
         Mark("inverted-turn", 2.0): [67, 66, 69],
     }.items():
-        notes = notes_of(play(note(0, 2, 67, mark)))
+        notes = play(note(0, 2, 67, mark)).notes
         assert [each.key for each in notes] == keys
         assert all(each.end_s < notes[0].end_s for each in notes[1:])
 
 
 def test_grace_notes_take_their_time_from_their_note():
     graces = (Grace(65.0), Grace(69.0))
-    notes = notes_of(
-        play(note(0, 1, 65), note(1, 1, 67, before=graces), note(2, 1, 67, after=graces))
-    )
+    notes = play(note(0, 1, 65), note(1, 1, 67, before=graces), note(2, 1, 67, after=graces)).notes
     assert [each.key for each in notes] == [65, 65, 69, 67, 67, 65, 69]
     starts = [each.start_s for each in notes]
     assert starts == sorted(starts)
@@ -326,14 +324,14 @@ def test_grace_notes_take_their_time_from_their_note():
 
 
 def test_a_grace_note_of_the_same_pitch_does_not_end_its_note():
-    small, own = notes_of(play(note(0, 2, 67, before=(Grace(67.0),))))
+    small, own = play(note(0, 2, 67, before=(Grace(67.0),))).notes
     assert small.end_s == own.start_s
     assert own.end_s == 2 * QUARTER_S
 
 
 def test_a_note_between_the_keys_is_bent_there():
     score = play(note(0, 1, 66.75), note(1, 1, 69))
-    assert [each.key for each in notes_of(score)] == [67, 69]
+    assert [each.key for each in score.notes] == [67, 69]
     assert settings(score, "/playing/bend") == [(0.0, -0.25), (0.5, None)]
 
 
@@ -373,7 +371,7 @@ def test_a_portamento_is_there_on_the_beat_and_a_glissando_takes_most_of_its_not
         ("glissando", 4, 0.7 * 4 * QUARTER_S - 1e-6, 0.7 * 4 * QUARTER_S + 1e-6),
     ):
         score = play(note(0, length, 67), note(length, 1, 79), spans=[span(name, 0, length)])
-        begin = notes_of(score)[1].start_s
+        begin = score.notes[1].start_s
         slide_s = settings(score, "/playing/portamento_time")[0][1] / 1e3
         assert least < slide_s < most
         assert begin + slide_s == pytest.approx(length * QUARTER_S)
@@ -382,13 +380,13 @@ def test_a_portamento_is_there_on_the_beat_and_a_glissando_takes_most_of_its_not
 
 def test_a_harmonic_touches_the_node_of_an_open_string_or_is_warned_of():
     score = play(note(0, 1, 91, "harmonic"), note(1, 1, 67))
-    assert [each.key for each in notes_of(score)] == [79, 67]  # a fifth above the open string
+    assert [each.key for each in score.notes] == [79, 67]  # a fifth above the open string
     flageolet = NUMBER["flageolet"]
     for address, value in (("/playing/articulation", flageolet), ("/playing/string", 2)):
         assert settings(score, address) == [(0.0, value), (QUARTER_S, None)]  # for this note alone
     assert not score.warnings
     score = play(note(0, 1, 80, "harmonic"))
-    assert [each.key for each in notes_of(score)] == [80]
+    assert [each.key for each in score.notes] == [80]
     assert "harmonic" in score.warnings[0]
 
 

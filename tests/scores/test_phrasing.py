@@ -13,7 +13,7 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Part
 from yehu_server.scores.phrasing import MIN_FOR_BOWS, is_fingered
 from yehu_server.scores.reading import ReadOptions, read_any
-from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, notes_of, phrases_of
+from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, phrases_of
 
 BEAT_S = 0.5
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -37,15 +37,15 @@ CONTROLLER = mido.Message("control_change", control=11, value=90)
 
 
 def sounding(score: Score) -> list[tuple[float, int]]:
-    return [(note.start_s, note.key) for note in notes_of(score)]
+    return [(note.start_s, note.key) for note in score.notes]
 
 
 def velocities(score: Score) -> list[int]:
-    return [note.velocity for note in notes_of(score)]
+    return [note.velocity for note in score.notes]
 
 
 def slurs(score: Score) -> int:
-    return sum(after.start_s < note.end_s for note, after in pairwise(notes_of(score)))
+    return sum(after.start_s < note.end_s for note, after in pairwise(score.notes))
 
 
 def test_pitches_and_onsets_stay_and_at_nothing_all():
@@ -87,7 +87,7 @@ QUICK = [(n * 0.25, 0.25, 67 + n % 5) for n in range(16)]
 def test_short_notes_of_a_beat_share_a_bow():
     shaped = phrased(bare(*QUICK), 0.5)
     assert slurs(shaped) >= 8
-    for note, after in pairwise(notes_of(shaped)):
+    for note, after in pairwise(shaped.notes):
         overlaps = after.start_s < note.end_s
         assert not (overlaps and int(note.beat) != int(after.beat))
         assert note.end_s - after.start_s < 0.02
@@ -109,24 +109,24 @@ def test_long_notes_leaps_repeated_notes_and_marked_bows_have_bows_of_their_own(
 
 def test_phrases_end_with_rests_long_notes_and_after_four_bars():
     rest = bare((0.0, 1.0, 67), (1.0, 1.0, 69), (3.0, 1.0, 71))
-    assert [len(phrase) for phrase in phrases_of(notes_of(rest))] == [2, 1]
+    assert [len(phrase) for phrase in phrases_of(rest.notes)] == [2, 1]
     held = bare(*[(n * 0.5, 0.5, 67) for n in range(6)], (3.0, 3.0, 72), (6.0, 0.5, 67))
-    assert [len(phrase) for phrase in phrases_of(notes_of(held))] == [7, 1]
+    assert [len(phrase) for phrase in phrases_of(held.notes)] == [7, 1]
     even = bare(*[(float(n), 1.0, 67) for n in range(20)])
-    assert [len(phrase) for phrase in phrases_of(notes_of(even))] == [16, 4]
+    assert [len(phrase) for phrase in phrases_of(even.notes)] == [16, 4]
 
 
 def test_the_bow_breathes_between_phrases_but_not_where_bows_are_marked():
     phrases = [(n * 0.5, 0.5, 67 + n % 3) for n in range(6)], (3.0, 3.0, 72), (6.0, 1.0, 67)
     notes = [*phrases[0], *phrases[1:]]
-    ends = [note.end_s for note in notes_of(phrased(bare(*notes), 0.5))]
+    ends = [note.end_s for note in phrased(bare(*notes), 0.5).notes]
     assert ends[6] == pytest.approx(3.0 - 0.05)
     assert ends[-1] == pytest.approx(3.5)
     pedal = mido.Message("control_change", control=64, value=0)
-    pedalled = notes_of(phrased(bare(*notes, extra=[(0.0, pedal)]), 0.5))
+    pedalled = phrased(bare(*notes, extra=[(0.0, pedal)]), 0.5).notes
     assert pedalled[6].end_s == 3.0
     slurred = [*phrases[0], (3.0, 3.02, 72), (6.0, 1.0, 67)]
-    assert notes_of(phrased(bare(*slurred), 0.5))[6].end_s == pytest.approx(3.01)
+    assert phrased(bare(*slurred), 0.5).notes[6].end_s == pytest.approx(3.01)
 
 
 def test_bends_of_what_is_not_played_leave_the_left_hand_free():
@@ -135,7 +135,7 @@ def test_bends_of_what_is_not_played_leave_the_left_hand_free():
     how = ReadOptions.by(usual, all_parts=False)
     score = read_any(EXAMPLES / "mo_li_hua.mid", how)
     bent = {event.message.channel for event in score.events if event.message.type == "pitchwheel"}
-    played = {note.channel for note in notes_of(score)}
+    played = {note.channel for note in score.notes}
     assert bent
     assert bent.isdisjoint(played)
     assert not is_fingered(score, usual)

@@ -18,7 +18,7 @@ from yehu_server.scores.reading import (
     read_written,
     tracks_with_notes,
 )
-from yehu_server.scores.score import Score, ScoreEvent, notes_of
+from yehu_server.scores.score import Score, ScoreEvent
 from yehu_server.scores.smf.reader import read_score
 from yehu_server.scores.smf.track import DamagedError
 
@@ -32,7 +32,7 @@ def test_musicxml_is_known_by_its_ending_or_its_beginning(tmp_path):
             path = tmp_path / name
             path.write_bytes(mark + score(BAR).encode())
             assert is_written(path), (name, mark)
-            assert [each.key for each in notes_of(read_any(path))] == [67, 69]
+            assert [each.key for each in read_any(path).notes] == [67, 69]
             assert read_any(path).name == "tune"
 
 

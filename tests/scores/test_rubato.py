@@ -9,7 +9,7 @@ import pytest
 from shaping import phrased
 
 from yehu_server.scores.reading import ReadOptions, performed_part, read_any
-from yehu_server.scores.score import Score, notes_of
+from yehu_server.scores.score import Score
 from yehu_server.scores.written.notated import Note, Part, Span, Tempo, Written
 
 QUARTER = 480  # ticks; at 120 a minute half a second
@@ -48,8 +48,8 @@ def tune(*, low=0, phrases=3):
 
 def later(score: Score, **how) -> np.ndarray:
     """How much later than written (s) each note begins."""
-    played = notes_of(phrased(score, 0.5, **how))
-    return np.array([b.start_s - a.start_s for a, b in zip(notes_of(score), played, strict=True)])
+    played = phrased(score, 0.5, **how).notes
+    return np.array([b.start_s - a.start_s for a, b in zip(score.notes, played, strict=True)])
 
 
 def test_phrases_begin_on_time_and_are_slower_at_their_ends_than_in_their_middle(tmp_path):
@@ -69,24 +69,24 @@ def test_rubato_goes_with_phrasing_or_as_far_as_is_asked_and_notes_keep_their_or
     assert later(score, rubato=1.0) == pytest.approx(2.0 * usual)
     assert (later(score, rubato=0.0) == 0.0).all()
     assert phrased(score, 0.0) is score
-    alone = [note.start_s for note in notes_of(phrased(score, 0.0, rubato=0.5))]
-    assert alone == pytest.approx([note.start_s for note in notes_of(phrased(score, 0.5))])
+    alone = [note.start_s for note in phrased(score, 0.0, rubato=0.5).notes]
+    assert alone == pytest.approx([note.start_s for note in phrased(score, 0.5).notes])
     most = phrased(score, 1.0)
     times = [event.time_s for event in most.events]
     assert times == sorted(times)
-    for note, after in pairwise(notes_of(most)):
+    for note, after in pairwise(most.notes):
         assert note.start_s < note.end_s <= after.start_s + 0.013
 
 
 def test_all_parts_move_together_whichever_is_read(tmp_path):
     slow = [(2.0, 67 + number % 3) for number in range(15)]
     path = midi(tmp_path, tune(), slow)
-    times = [each.start_s for each in notes_of(read_any(path, ReadOptions(all_parts=True)))]
+    times = [each.start_s for each in read_any(path, ReadOptions(all_parts=True)).notes]
     every = dict(zip(times, later(read_any(path, ReadOptions(all_parts=True))), strict=True))
     assert len({*every.values()}) > 10
     for name in ("part 1", "part 2"):
         score = read_any(path, ReadOptions((name,)))
-        for note, delay in zip(notes_of(score), later(score), strict=True):
+        for note, delay in zip(score.notes, later(score), strict=True):
             assert delay == pytest.approx(every[note.start_s], abs=1e-9)
 
 

@@ -15,7 +15,7 @@ from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.scores.score import Score, ScoreEvent, Setting, notes_of
+from yehu_server.scores.score import Score, ScoreEvent, Setting
 from yehu_server.scores.slides import logistic
 
 BEND, STRING = "/playing/bend", "/playing/string"
@@ -59,7 +59,7 @@ def test_a_slide_is_a_bend_of_the_note_before_that_ends_on_the_beat():
     """Slow at its ends, and quick in its middle."""
     for keys, leap in (((74, 79), 5.0), ((79, 74), -5.0), ((67, 76), 9.0)):
         played = slid(score_of(*keys))
-        assert [(n.start_s, n.key) for n in notes_of(played)] == [(0.0, keys[0]), (HALVES, keys[1])]
+        assert [(n.start_s, n.key) for n in played.notes] == [(0.0, keys[0]), (HALVES, keys[1])]
         times, bends = np.array(settings(played, BEND)).T
         assert bends[-1] == pytest.approx(leap)
         assert times[-1] + 0.008 == pytest.approx(HALVES)  # a bend takes 8 ms

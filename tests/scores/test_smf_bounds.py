@@ -46,14 +46,6 @@ def test_a_file_one_may_not_read_is_refused(tmp_path):
         read_score(path)
 
 
-def test_a_huge_file_is_refused_unread(tmp_path):
-    path = tmp_path / "huge.mid"
-    with path.open("wb") as file:
-        file.truncate(64 * 2**20 + 1)
-    with pytest.raises(ScoreError, match=r"huge\.mid: larger than 64 MiB"):
-        read_score(path)
-
-
 def test_more_tracks_than_a_header_can_count_are_refused(read):
     with pytest.raises(ScoreError, match="has more than 65535 tracks"):
         read(midi(on(0, 60), kind=2) + chunk(b"MTrk", b"") * 65_535)

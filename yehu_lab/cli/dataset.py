@@ -88,9 +88,9 @@ def run(arguments: argparse.Namespace) -> int:
                 progress_bar(arguments, "making", "sounds") as progress,
                 contextlib.closing(making.make_all(left, perform_all)) as made,
             ):
-                for done, more in made if left else ():
+                for more in made if left else ():
                     lines += more
-                    progress(done, description.count - current)
+                    progress(len(lines) - current, description.count - current)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(
                 f"{len(lines)} of {description.count} sounds are in {folder}; "

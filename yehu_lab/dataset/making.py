@@ -13,7 +13,7 @@ from yehu_lab.dataset.sound import HOP_S, Sound
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.rendering import build_records
 from yehu_server.rendering.build_records import hash_of
-from yehu_server.rendering.workers import Event, ProgressCallback
+from yehu_server.rendering.workers import Event
 from yehu_server.scores.gesture import CONTROLS
 from yehu_server.util.files import make_folder, replacing
 
@@ -84,27 +84,27 @@ class Part:
         return [name for each in self.numbers for name in names_of(self.description, each)]
 
 
-def perform(part: Part, report_progress: ProgressCallback) -> dict[str, Any]:
+def perform(part: Part) -> dict[str, Any]:
     """Make some sounds, where the folder is; where it is not seen, they are sent back.
 
     Returns ``lines`` of the manifest and ``files``, the bytes of each by its name, where they
     travel.
     """
     if part.mark is None or part.mark.is_file():
-        return {"lines": _made(part, part.folder, report_progress), "files": {}}
+        return {"lines": _made(part, part.folder), "files": {}}
     with tempfile.TemporaryDirectory(prefix="yehu-server-") as name:
         folder = Path(name)
-        lines = _made(part, folder, report_progress)
+        lines = _made(part, folder)
         names = [line[each] for line in lines if "error" not in line for each in ("file", "arrays")]
         return {"lines": lines, "files": {name: (folder / name).read_bytes() for name in names}}
 
 
-def _made(part: Part, folder: Path, report_progress: ProgressCallback) -> list[Line]:
+def _made(part: Part, folder: Path) -> list[Line]:
     from yehu_lab.dataset.notes import melody, stroke
 
     make = stroke if part.description.kind == "strokes" else melody
     lines = []
-    for done, number in enumerate(part.numbers, start=1):
+    for number in part.numbers:
         name = names_of(part.description, number)[0]
         try:
             make_folder((folder / name).parent)
@@ -114,7 +114,6 @@ def _made(part: Part, folder: Path, report_progress: ProgressCallback) -> list[L
             lines.append({"file": name, "number": number, "error": str(error)})
         except MemoryError:
             lines.append({"file": name, "number": number, "error": "not enough memory"})
-        report_progress(done, len(part.numbers))
     return lines
 
 
@@ -156,26 +155,22 @@ def split_up_to_date(parts: Iterable[Part]) -> tuple[list[Part], list[Line]]:
 
 def make_all(
     parts: Sequence[Part], perform_all: Callable[[Sequence[Part]], Iterable[Event]]
-) -> Generator[tuple[float, Sequence[Line]]]:
-    """Make all parts; yield how many sounds are done, and the lines of those that just were.
+) -> Generator[Sequence[Line]]:
+    """Make all parts; yield the lines of the sounds of each as it is over.
 
     `perform_all` does them, as ``rendering.cluster.Cluster.perform_all`` does. Raises OutputError
     where what has travelled cannot be written.
     """
-    shares = [0.0] * len(parts)
     for event in perform_all(parts):
         part = parts[event.job]
-        shares[event.job] = event.share * len(part.numbers)
-        lines: Sequence[Line] = ()
         if event.died:
             why = f"the process that made it was {event.died}"
-            lines = [
+            yield [
                 {"file": names_of(part.description, number)[0], "number": number, "error": why}
                 for number in part.numbers
             ]
-        elif event.is_end:
-            lines = received(part, event.result)
-        yield sum(shares), lines
+        else:
+            yield received(part, event.result)
 
 
 def received(part: Part, returned: Any) -> Sequence[Line]:

@@ -158,8 +158,6 @@ def _on_cluster(study: Study, chunks: list[Array], cluster: Any) -> Iterator[tup
     text = study.as_text()
     tasks = [(text, chunk.tobytes()) for chunk in chunks]
     for event in cluster.perform_all(perform, tasks):
-        if not event.is_end:
-            continue
         if event.died:
             raise YehuError(f"a chunk of strokes ended its workers: {event.died}")
         if isinstance(event.result, str):
@@ -176,7 +174,7 @@ def _received(found: Any, count: int) -> Array:
     raise YehuError("a worker's answer is not a result")
 
 
-def perform(task: tuple[str, bytes], _progress: Any = None) -> bytes | str:
+def perform(task: tuple[str, bytes]) -> bytes | str:
     """Bow the strokes of a task of a cluster: their findings as bytes, or what is wrong as text."""
     text, numbers = task
     try:

@@ -10,10 +10,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from yehu_server.errors import DeviceError, OutputError, ParameterError
+from yehu_server.errors import DeviceError, ParameterError
 from yehu_server.live.audio.devices import load_portaudio
 from yehu_server.plot.sounds import is_pressure, sound_of
-from yehu_server.util.sound_file import check_format, format_of, sound_file
+from yehu_server.util.sound_file import format_of, sound_file
 from yehu_server.util.subtypes import SUBTYPES
 
 Sound = NDArray[Any]
@@ -138,8 +138,5 @@ def write_sound(sound: Sound, sample_rate: int, target: Path, subtype: Subtype) 
     if subtype not in SUBTYPES:
         raise ParameterError(f"subtype: {subtype!r} is not one of {', '.join(SUBTYPES)}")
     form, channels = format_of(target), 1 if sound.ndim == 1 else sound.shape[1]
-    check_format(form, subtype, channels)
-    if not target.parent.is_dir():
-        raise OutputError(f"{target}: there is no folder {target.parent}")
     with sound_file(target, sample_rate, form, subtype, channels=channels) as file:
         file.write(np.ascontiguousarray(sound))

@@ -1,17 +1,7 @@
 """What commands there are: those of this package, and those that others of the project add.
 
-A package adds its own by an entry point of GROUP, which names its table of them. It is read from
-the distribution's file beside the packages, or from a checkout's pyproject.toml: importlib.metadata
-finds more, but to load it takes a fifth of what ``--help`` does.
+A package adds its own by an entry point of GROUP, which names its table of them.
 """
-
-import re
-import tomllib
-from collections.abc import Iterator
-from importlib import import_module
-from typing import Any
-
-from yehu_server.util import PACKAGE
 
 # What each command is for; each is a module of this package.
 COMMANDS = {
@@ -31,15 +21,15 @@ COMMANDS = {
 }
 FIRST = "serve"  # in the help; the others follow by their names
 GROUP = "yehu_server.commands"
-_POINT = re.compile(r"^\S+ *= *([\w.]+):(\w+) *$", re.MULTILINE)
 
 
 def all_commands() -> dict[str, tuple[str, str]]:
     """Each command's module and what it is for, in the order of the help."""
+    from importlib.metadata import entry_points  # 10 ms, which few commands need
+
     found = {name: (f"{__package__}.{name}", text) for name, text in COMMANDS.items()}
-    for package, table in _entry_points():
-        texts = getattr(import_module(package), table)
-        found |= {name: (f"{package}.{name}", text) for name, text in texts.items()}
+    for point in entry_points(group=GROUP):
+        found |= {name: (f"{point.module}.{name}", text) for name, text in point.load().items()}
     return dict(sorted(found.items(), key=lambda each: (each[0] != FIRST, each[0])))
 
 
@@ -48,18 +38,3 @@ def module_of(name: str) -> str | None:
     if name in COMMANDS:
         return f"{__package__}.{name}"
     return all_commands().get(name, (None,))[0]
-
-
-def _entry_points() -> Iterator[tuple[str, str]]:
-    """The modules and names that entry points of GROUP have."""
-    folder = PACKAGE.parent
-    for file in folder.glob("yehu_server-*.dist-info/entry_points.txt"):
-        _, _, points = file.read_text(encoding="utf-8").partition(f"[{GROUP}]\n")
-        yield from _POINT.findall(points.partition("\n[")[0])
-        return
-    checkout = folder / "pyproject.toml"
-    if checkout.exists():  # else the package was copied without the others
-        project: dict[str, Any] = tomllib.loads(checkout.read_text(encoding="utf-8"))["project"]
-        for point in project["entry-points"][GROUP].values():
-            package, _, table = point.partition(":")
-            yield package, table

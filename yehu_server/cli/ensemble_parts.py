@@ -103,12 +103,12 @@ def players_of(
 def _with_own_moves(score: Score, written: Score, name: str, within: NoteRange) -> Score:
     """A part whose remark on moves is of itself alone, where others have other instruments."""
     from yehu_server.scores.octaves import NoteSpan, octaves_of
-    from yehu_server.scores.score import REST_S, notes_of
+    from yehu_server.scores.score import REST_S
     from yehu_server.scores.written.in_range import MOVED, line_of
 
     remarks = [line for line in score.remarks if not line.startswith(MOVED)]
     if len(remarks) < len(score.remarks):
-        spans = [NoteSpan(n.start_s, n.end_s, (float(n.key),)) for n in notes_of(written)]
+        spans = [NoteSpan(n.start_s, n.end_s, (float(n.key),)) for n in written.notes]
         octaves = octaves_of(spans, REST_S, within)
         if octaves.summary:
             remarks.append(line_of([(name, octaves)], within))
@@ -151,10 +151,10 @@ def _entries(arguments: argparse.Namespace, scores: Sequence[Score]) -> list[Par
 
 def _check_played(ensemble: EnsembleFile, scores: Sequence[Score]) -> None:
     """Refuse parts that have nothing to play."""
-    from yehu_server.scores.reading import has_notes, part_of
+    from yehu_server.scores.reading import part_of
 
     for entry in ensemble.parts:
-        if not has_notes([part_of(score, entry.channel, entry.track) for score in scores]):
+        if not any(part_of(score, entry.channel, entry.track).notes for score in scores):
             channel = "" if entry.channel is None else f"channel {entry.channel + 1}"
             track = "" if entry.track is None else f"track {entry.track}"
             what = " of ".join(filter(None, (channel, track)))

@@ -18,7 +18,6 @@ from yehu_server.util import files
 
 if TYPE_CHECKING:
     from yehu_server.rendering.folder_tree import Entry
-    from yehu_server.rendering.workers import ProgressCallback
 
 log = logging.getLogger(__name__)
 
@@ -37,12 +36,12 @@ class Task:
     mark: Path | None = None
 
 
-def perform(task: Task, report_progress: ProgressCallback) -> Line:
+def perform(task: Task) -> Line:
     """Render a score to its place; return its line of the manifest."""
     entry = task.entry
     work = build_records.temporary_of(entry.target)
     try:
-        return _made(task, work, report_progress)
+        return _made(task, work)
     except YehuError as error:
         reason = str(error)
         for path in map(str, (entry.source, entry.target, work)):  # they are named beside it
@@ -61,7 +60,7 @@ def perform(task: Task, report_progress: ProgressCallback) -> Line:
     return {"file": entry.name, "error": reason}
 
 
-def _made(task: Task, work: Path, report_progress: ProgressCallback) -> Line:
+def _made(task: Task, work: Path) -> Line:
     from yehu_server.cli.render_one import rendered
 
     entry, options = task.entry, task.arguments
@@ -80,7 +79,7 @@ def _made(task: Task, work: Path, report_progress: ProgressCallback) -> Line:
     own.format = options.format or "wav"
     printed = io.StringIO()
     with contextlib.redirect_stderr(printed):
-        done = rendered(own, report_progress)
+        done = rendered(own)
     summary = done.summary
     line = {
         "file": entry.name,

@@ -115,17 +115,12 @@ def _render_all(
             playing_options_of(arguments).calibration(float(arguments.rate), progress)
         cores = arguments.jobs or os.cpu_count() or 1
         ended = perform_all(perform, tasks, min(cores, len(tasks)))
-    number = total - len(tasks)
-    shares, done = [0.0] * len(tasks), 0.0
+    before = total - len(tasks)
     with progress_bar(arguments, "rendering", "scores") as progress, contextlib.closing(ended):
-        for event in ended:
-            done += event.share - shares[event.job]
-            shares[event.job] = event.share
+        for done, event in enumerate(ended, start=1):
             progress(done, len(tasks))
-            if event.is_end:
-                lines.append(_line_of(tasks[event.job], event))
-                number += 1
-                _report(arguments, lines[-1], number, total)
+            lines.append(_line_of(tasks[event.job], event))
+            _report(arguments, lines[-1], before + done, total)
 
 
 def _on_cluster(

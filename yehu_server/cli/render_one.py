@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
@@ -38,14 +37,10 @@ class Rendered:
     read: Sequence[Path]
 
 
-def rendered(
-    arguments: argparse.Namespace, follow: Callable[[float, float], None] | None = None
-) -> Rendered:
+def rendered(arguments: argparse.Namespace) -> Rendered:
     """Render what the options ask for.
 
     Raises YehuError where it fails; no partial file is left.
-
-    `follow`: called with the seconds done and those of the score, in place of a progress bar.
     """
     from yehu_server.playing.calibration import calibration_key
     from yehu_server.rendering.to_files import render
@@ -85,8 +80,7 @@ def rendered(
         watch = PlotData(float(options.rate), longest_s, len(parts), playing.a4)
         options = replace(options, block=sound_options.PLOTTED_BLOCK)
     with progress_bar(arguments, "rendering") as progress:
-        listen = follow or progress
-        summary = render(parts, arguments.output, options, listen, may_replace, stems, watch)
+        summary = render(parts, arguments.output, options, progress, may_replace, stems, watch)
     if watch is not None:
         from yehu_server.plot.sound_panels import write_picture
 

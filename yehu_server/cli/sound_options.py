@@ -131,8 +131,7 @@ def sound_options_of(arguments: argparse.Namespace, form: str) -> Options:
     from yehu_server.util.sound_file import check_format
 
     subtype = arguments.subtype or ("float" if form == "raw" else "24")
-    if form != "raw":
-        check_format(form, subtype)
+    check_format(form, subtype)
     return replace(Options(**chosen(Options, arguments)), format_name=form, subtype=subtype)
 
 

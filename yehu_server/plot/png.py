@@ -59,10 +59,7 @@ def write_picture(
         fill(figure)
         figure.savefig(data, format="png", metadata={"Software": SOFTWARE})
     with files.replacing(target, files.replace_any if overwrite else is_ours) as partial:
-        try:
-            partial.write_bytes(data.getvalue())
-        except OSError as error:
-            raise OutputError(f"{target}: cannot write: {files.error_reason(error)}") from error
+        partial.write_bytes(data.getvalue())
 
 
 def plain(text: str, most: int = MAX_TEXT) -> str:

@@ -20,7 +20,7 @@ from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import PartPlayer
 from yehu_server.scores.phrasing import PHRASING
-from yehu_server.scores.score import Score, notes_of
+from yehu_server.scores.score import Score
 from yehu_server.scores.written.mark_settings import actives_of, is_plucked
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.part_bowing import Played, bowed
@@ -73,7 +73,7 @@ def strokes_of(
 
 def _slurred(score: Score, played: Sequence[Played]) -> list[bool]:
     """Whether each note begins while the one before it sounds."""
-    notes = sorted(notes_of(score), key=lambda note: note.start_s)
+    notes = sorted(score.notes, key=lambda note: note.start_s)
     found, place, end_s = [], 0, 0.0
     for each in played:
         while place < len(notes) and notes[place].start_s < each.begin_s - SOONER_S:

@@ -96,7 +96,7 @@ class Cluster:
     def perform_all(self, perform: Perform, tasks: Iterable[Any]) -> Generator[Event]:
         """Do all tasks; yield what becomes of them, in the order in which they end.
 
-        As of ``rendering.workers.perform_all``, but progress is lost. Results are plain values:
+        As of ``rendering.workers.perform_all``. Results are plain values:
         None, numbers, texts, bytes, and lists and dicts of them. Whoever takes one checks it:
         anybody who reaches the scheduler may have sent it. Raises YehuError where the scheduler is
         lost, or a worker has another version.
@@ -168,14 +168,14 @@ class Cluster:
                 other = cluster_worker.identity_of(value)
                 raise YehuError(self._unlike("a worker that came later", other))
             if kind == cluster_worker.FAILED:
-                return Event(job, 1.0, died=f"ended by {value}")
-            return Event(job, 1.0, result=value)
+                return Event(job, died=f"ended by {value}")
+            return Event(job, result=value)
         error = future.exception()
         known: tuple[Any, ...] = getattr(error, "args", ())
         is_killed = type(error).__name__ == "KilledWorker" and len(known) == 3
         if is_killed and isinstance(known[2], int):
-            return Event(job, 1.0, died=f"killed on {known[2] + 1} workers")
-        return Event(job, 1.0, died=f"ended by {type(error).__name__}: {error}")
+            return Event(job, died=f"killed on {known[2] + 1} workers")
+        return Event(job, died=f"ended by {type(error).__name__}: {error}")
 
     def _check(self) -> None:
         """Check that there are workers, and that all are like this process."""

@@ -77,7 +77,7 @@ def do(job: bytes, code: str) -> bytes:
                 with machine_lock(data_folder(), "setup"):
                     pickle.loads(setup)()  # noqa: S301
                 _set_up.add(setup)
-            return bytes(msgpack.packb((DONE, perform(task, lambda _done, _total: None))))
+            return bytes(msgpack.packb((DONE, perform(task))))
     except Exception as error:  # noqa: BLE001 - no exception travels: it would be unpickled
         return bytes(msgpack.packb((FAILED, f"{type(error).__name__}: {error}")))
 

@@ -15,7 +15,7 @@ from yehu_server.playing.parts import section_size
 from yehu_server.scores.chords import without_lower_notes
 from yehu_server.scores.chosen_parts import MELODIC
 from yehu_server.scores.phrasing import is_fingered, phrased
-from yehu_server.scores.score import Score, concatenate, notes_of, says_mpe
+from yehu_server.scores.score import Score, concatenate, says_mpe
 
 BEND_RANGE = "/playing/bend_range"
 DATA, RPN = 6, (101, 100)  # controllers: RPN 0 is the bend range
@@ -54,7 +54,7 @@ class Part:
 
     def check_is_heard(self) -> None:
         """Check that one of the score's notes is played; raises ScoreError where it has some."""
-        found = sorted({note.channel for note in notes_of(self.score)})
+        found = sorted({note.channel for note in self.score.notes})
         chosen = MELODIC if self.playing.channels is None else self.playing.channels
         is_mpe = self.playing.channels is None and self.playing.mapping.mpe  # a member may be 10
         if not found or is_mpe or not chosen.isdisjoint(found):

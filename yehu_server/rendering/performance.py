@@ -1,7 +1,7 @@
 """A performance: instruments on a stage play the events of their parts, block by block."""
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,11 @@ from yehu_server.params.table import find
 from yehu_server.playing.parts import assemble, number_of_instruments
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
 from yehu_server.rendering.options import Options, Part
-from yehu_server.rendering.workers import ProgressCallback
-from yehu_server.scores.score import ScoreEvent, Setting, notes_of
+from yehu_server.scores.score import ScoreEvent, Setting
 
 END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
 Samples = np.ndarray[Any, np.dtype[np.float32]]
+ProgressCallback = Callable[[float, float], None]  # seconds done, and those of the score
 QUIET = 1e-4  # 80 dB below full scale
 QUIET_S = 0.2  # the tail ends after this time of quiet
 LONGEST_TAIL_S = 5.0
@@ -40,7 +40,7 @@ class PartPlayer:
             self.player.start_with(address, value)
         self._sound = self.player.sound()  # what settings of the score are put back to
         self._passing: set[str] = set()  # what is set until the next note
-        self._lengths_s = {note.begins: note.length_s for note in notes_of(part.score)}
+        self._lengths_s = {note.begins: note.length_s for note in part.score.notes}
         self._events = enumerate(part.score.events)
         self._next = next(self._events, END)
 

@@ -7,79 +7,65 @@ samples have no header; all channels of a frame follow each other, little endian
 
 import contextlib
 import io
+import math
 import struct
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from yehu_server.errors import OutputError
 from yehu_server.util.files import write_all
-from yehu_server.util.sound_file import RENDERED, SoundWriter, check_format
+from yehu_server.util.sound_file import RENDERED, SoundWriter
 from yehu_server.util.wav_stream import WavStream, check_shape, encoded
 
-FORMATS = ("wav", "raw")
 UNKNOWN = struct.pack("<I", 0xFFFFFFFF)
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 
-def _wav_header(rate: int, subtype: str, channels: int) -> bytes:
-    file: Any = io.BytesIO()
-    WavStream(file, rate, subtype, RENDERED, channels=channels)
-    known = file.getvalue()
-    return bytes(known[:4] + UNKNOWN + known[8:-4] + UNKNOWN)
+class _RawStream:
+    """Writes samples one after another, and nothing else; as WavStream."""
 
+    most_frames = math.inf
 
-class _Stream:
-    """Writes a header, and samples one after another."""
-
-    def __init__(self, file: io.FileIO, header: bytes, subtype: str, channels: int) -> None:
+    def __init__(
+        self, file: io.FileIO, _rate: int, subtype: str, _software: str, *, channels: int
+    ) -> None:
         self.frames = 0
         self._file, self._subtype, self._channels = file, subtype, channels
-        write_all(file, header)
 
     def write(self, samples: Samples) -> None:
         check_shape(samples, self._channels)
         write_all(self._file, encoded(samples, self._subtype))
         self.frames += len(samples)
 
-
-class PipeWriter(SoundWriter):
-    """Writes sound to a pipe; raises BrokenPipeError where nobody reads, else OutputError."""
-
-    def __init__(  # the file's own has a limit, and a header that it writes again
-        self, file: io.FileIO, rate: int, format_name: str, subtype: str, channels: int
-    ) -> None:  # pylint: disable=super-init-not-called
-        header = b""
-        if format_name == "wav":
-            check_format(format_name, subtype, channels)
-            header = _wav_header(rate, subtype, channels)
-        self._target = Path("standard output")
-        self._channels, self._limit = channels, None
-        self.frames, self.peak, self._power = 0, 0.0, 0.0
-        with self._converting_errors():
-            self._stream = _Stream(file, header, subtype, channels)  # type: ignore[assignment]
-
     def close(self) -> None:
         """Do nothing: each write was complete."""
 
-    @contextlib.contextmanager
-    def _converting_errors(self) -> Iterator[None]:
-        try:
-            with super()._converting_errors():
-                yield
-        except OutputError as error:
-            if isinstance(error.__cause__, BrokenPipeError):
-                raise error.__cause__ from None
-            raise
+
+class _EndlessWavStream(_RawStream):
+    """The same behind a header of unknown sizes."""
+
+    def __init__(self, file: io.FileIO, *form: Any, channels: int) -> None:
+        super().__init__(file, *form, channels=channels)
+        known: Any = io.BytesIO()
+        WavStream(known, *form, channels=channels)
+        header = known.getvalue()
+        write_all(file, header[:4] + UNKNOWN + header[8:-4] + UNKNOWN)
+
+
+class _PipeWriter(SoundWriter):
+    """Writes sound to a pipe; raises BrokenPipeError where nobody reads, else OutputError."""
+
+    STREAMS: ClassVar = {"wav": _EndlessWavStream, "raw": _RawStream}
 
 
 def check_pipe(format_name: str) -> None:
     """Raise OutputError where standard output is a terminal, or the format needs a file."""
-    if format_name not in FORMATS:
+    if format_name not in _PipeWriter.STREAMS:
         raise OutputError(f"a {format_name} file cannot be piped; use --format wav or raw")
     if sys.stdout is not None and sys.stdout.isatty():
         raise OutputError("standard output is a terminal; redirect it to a file or a program")
@@ -98,4 +84,5 @@ def sound_pipe(rate: int, format_name: str, subtype: str, channels: int) -> Iter
     except OSError as error:
         raise OutputError("standard output is closed") from error
     with file:
-        yield PipeWriter(file, rate, format_name, subtype, channels)
+        form = (rate, format_name, subtype, RENDERED)
+        yield _PipeWriter(file, Path("standard output"), *form, channels=channels)

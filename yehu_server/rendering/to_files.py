@@ -13,13 +13,11 @@ import numpy as np
 from yehu_server.errors import OutputError, ScoreError
 from yehu_server.rendering import PIPE
 from yehu_server.rendering.options import Options, Part
-from yehu_server.rendering.performance import Performance, Samples
+from yehu_server.rendering.performance import Performance, ProgressCallback, Samples
 from yehu_server.rendering.pipe import sound_pipe
 from yehu_server.rendering.plot_data import PlotData
 from yehu_server.rendering.summary import Summary, summary_of
-from yehu_server.rendering.workers import ProgressCallback
 from yehu_server.scores.capture_writer import LiveCapture
-from yehu_server.scores.score import notes_of
 from yehu_server.util.files import error_reason, replace_any
 from yehu_server.util.loudness import IntegratedLoudness
 from yehu_server.util.sound_file import SoundWriter, sound_file
@@ -168,7 +166,7 @@ def render(
                 for file, samples in zip(files, take, strict=True):
                     file.write(samples)
         is_silent = not any(one.player.notes_played for one in performance.players)
-        if is_silent and any(notes_of(part.score) for part in parts):
+        if is_silent and any(part.score.notes for part in parts):
             raise ScoreError(f"{parts[0].score.name}: none of its notes is played")
     elapsed_s, file = time.perf_counter() - start, files[0]
     ends = options.subtype != "float"

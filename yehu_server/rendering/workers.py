@@ -10,7 +10,6 @@ import os
 import queue
 import signal
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
@@ -21,26 +20,18 @@ from yehu_server.errors import YehuError
 from yehu_server.system.processes import on_termination, terminate_main_thread
 from yehu_server.util.files import error_reason
 
-ProgressCallback = Callable[[float, float], None]  # what is done, and of what
-Perform = Callable[[Any, ProgressCallback], Any]
+Perform = Callable[[Any], Any]
 MAX_TRIES = 2  # of a job whose process dies
 EXIT_WAIT_S = 10.0
-REPORT_EVERY_S = 0.2
 
 
 @dataclass(frozen=True)
 class Event:
-    """What became of a job: its share done, or its result, or why its processes died."""
+    """What became of a job that is over: its result, or why its processes died."""
 
     job: int  # the number of its task, from 0
-    share: float = 0.0  # of the job; 1 when it is over
     result: Any = None  # what was returned
     died: str = ""  # how its process ended, such as "killed by signal 9"
-
-    @property
-    def is_end(self) -> bool:
-        """Whether the job is over."""
-        return self.share >= 1.0
 
 
 class _Worker:
@@ -75,9 +66,9 @@ class _Worker:
 def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generator[Event]:
     """Do all tasks; yield what becomes of them, as it does.
 
-    `perform` is a function of a module, called in another process with a task and a function to
-    report the progress: what is done, of what. Its result, and tasks, have to be picklable; it must
-    not raise. At most `workers` processes run. Raises YehuError where no process can be started.
+    `perform` is a function of a module, called in another process with a task. Its result, and
+    tasks, have to be picklable; it must not raise. At most `workers` processes run.
+    Raises YehuError where no process can be started.
     """
     context = multiprocessing.get_context("spawn")
     waiting = deque((job, 1) for job in range(len(tasks)))
@@ -97,7 +88,7 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
             for worker in [each for each in pool if each.connection in ready]:
                 job = worker.job
                 try:
-                    share, result = worker.connection.recv()
+                    result = worker.connection.recv()
                 except (EOFError, OSError):
                     pool.remove(worker)
                     worker.connection.close()
@@ -107,11 +98,10 @@ def perform_all(perform: Perform, tasks: Sequence[Any], workers: int) -> Generat
                     if tries[job] < MAX_TRIES:
                         waiting.appendleft((job, tries[job] + 1))
                     else:
-                        yield Event(job, 1.0, died=how)
+                        yield Event(job, died=how)
                     continue
-                if share >= 1.0:
-                    worker.job = -1
-                yield Event(job, share, result)
+                worker.job = -1
+                yield Event(job, result)
     finally:
         for worker in pool:
             worker.connection.close()
@@ -125,17 +115,9 @@ def _serve(connection: Connection, perform: Perform) -> None:
     on_termination(_interrupt)
     tasks: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(connection, tasks), daemon=True).start()
-    reported = [time.monotonic()]
-
-    def report(done: float, total: float) -> None:
-        now = time.monotonic()
-        if now - reported[0] >= REPORT_EVERY_S and total > 0.0:
-            reported[0] = now
-            connection.send((min(done / total, 0.99), None))
-
     try:
         while (task := tasks.get()) is not None:
-            connection.send((1.0, perform(task[0], report)))
+            connection.send(perform(task[0]))
     except (KeyboardInterrupt, OSError):  # what was being made has been put away
         os._exit(0)
 

@@ -16,17 +16,18 @@ from yehu_server.core.player.commands import COMMAND
 from yehu_server.errors import ScoreError
 from yehu_server.scores.capture_format import (
     FORMAT,
+    MAX_FRAMES,
     VERSION,
+    WRONG,
     CommandRow,
     build,
-    frames_of,
     from_line,
-    player_of,
     ramp_of,
 )
 from yehu_server.scores.capture_header import SessionStart, read_header
 from yehu_server.util.documents import Document, Fields
 from yehu_server.util.files import error_reason, read_lines
+from yehu_server.util.values import whole
 
 MAX_BYTES = 1 << 30
 MAX_COMMANDS = 20_000_000  # each takes 48 bytes
@@ -86,7 +87,7 @@ def _rows(path: Path, lines: Iterator[str], capture: Capture) -> Iterator[tuple[
     for number, line in enumerate(lines, start=2):
         try:
             row = _row(json.loads(line), capture) if line.strip() else None
-        except _WRONG as error:
+        except WRONG as error:
             if not line.endswith("\n"):  # cut short by a crash
                 return
             raise ScoreError(f"{path}: line {number}: not a line of a capture ({error})") from error
@@ -95,11 +96,6 @@ def _rows(path: Path, lines: Iterator[str], capture: Capture) -> Iterator[tuple[
             count += 1
             if count > MAX_COMMANDS:
                 raise ScoreError(f"{path}: has more than {MAX_COMMANDS} events")
-
-
-_WRONG = (
-    ValueError, TypeError, KeyError, IndexError, AttributeError, OverflowError, RecursionError,
-)  # fmt: skip
 
 
 def _header(path: Path, line: str) -> Capture:
@@ -119,20 +115,20 @@ def _row(entry: Any, capture: Capture) -> tuple[CommandRow, int] | None:
     if isinstance(entry, list):
         if capture.version == 1:
             frame, *ramp = entry
-            return (frames_of(frame), *ramp_of(*ramp)), 0
+            return (whole(frame, 0, MAX_FRAMES), *ramp_of(*ramp)), 0
         if capture.version == 2:
             return from_line(entry), 0
-        player = player_of(entry[1], len(capture.beginning.players))
-        return from_line([entry[0], *entry[2:]]), player
+        player = whole(entry[1], 1, len(capture.beginning.players))
+        return from_line([entry[0], *entry[2:]]), player - 1
     if "end" in entry:
-        capture.end = frames_of(entry["end"])
+        capture.end = whole(entry["end"], 0, MAX_FRAMES)
     elif "rest" in entry:
-        rest, since = frames_of(entry["rest"]), frames_of(entry["since"])
+        rest, since = (whole(entry[name], 0, MAX_FRAMES) for name in ("rest", "since"))
         capture.gaps[rest] = since
         if since > rest or len(capture.gaps) > MAX_RESTS:
             raise ValueError("a rest before its beginning, or too many of them")
     elif "lost" in entry:
-        capture.lost += frames_of(entry["events"])
+        capture.lost += whole(entry["events"], 0, MAX_FRAMES)
     return None
 
 

@@ -9,8 +9,10 @@ from yehu_server.compile import levels
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.core.controls.slots import SILENCE
 from yehu_server.core.player import commands
+from yehu_server.errors import ParameterError
 from yehu_server.params.table import ENGINE, SLOT, TABLE
 from yehu_server.util import __version__
+from yehu_server.util.values import number, whole
 
 FORMAT, VERSION = "yehu-server capture", 3
 MAX_FRAMES = 1 << 53
@@ -24,6 +26,10 @@ INDEX = {param.address: index for index, param in enumerate(TABLE)}
 NUMBERS = {name: kind for kind, name in enumerate(commands.KINDS)}
 
 CommandRow = tuple[int, int, int, float, float]  # of a command
+# What is raised where a line, or a part of one, is no command.
+WRONG = (
+    ParameterError, ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError,
+)  # fmt: skip
 
 
 def build() -> dict[str, str]:
@@ -59,34 +65,34 @@ def as_line(command: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one 
 
 
 def from_line(line: list[Any]) -> CommandRow:
-    """A command's fields, from its JSON value; raises ValueError, TypeError, KeyError."""
-    frame, kind, values = frames_of(line[0]), NUMBERS[line[1]], line[2:]
+    """A command's fields, from its JSON value; raises `WRONG`."""
+    frame, kind, values = whole(line[0], 0, MAX_FRAMES), NUMBERS[line[1]], line[2:]
     index, value, other = 0, 0.0, 0.0
     if kind == commands.RAMP:
         return (frame, *ramp_of(*values))
     if kind in (commands.WRITE, commands.HOLD):
-        address, number, glide_ms = values
-        index, value = _setting(address, number)
-        other = _within(glide_ms, 0.0, MAX_MS)
+        address, setting, glide_ms = values
+        index, value = _setting(address, setting)
+        other = number(glide_ms, 0.0, MAX_MS)
     elif kind == commands.EXPRESS:
         index, value = _setting(*values)
     elif kind in (commands.BEGIN, commands.END):
         channel, key, last = values
-        index = _whole(channel, -MAX_CHANNELS, MAX_CHANNELS)  # below 0: no MIDI channel
-        value = _within(key, 0.0, HIGHEST_KEY)
+        index = whole(channel, -MAX_CHANNELS, MAX_CHANNELS)  # below 0: no MIDI channel
+        value = number(key, 0.0, HIGHEST_KEY)
         is_key = kind == commands.BEGIN
-        other = _within(last, 0.0, HIGHEST_KEY) if is_key else float(_whole(last, 0, 1))
+        other = number(last, 0.0, HIGHEST_KEY) if is_key else float(whole(last, 0, 1))
     elif kind == commands.STOP:
         (panic,) = values
-        value = _within(panic, 0.0, 1.0)
+        value = number(panic, 0.0, 1.0)
     elif kind == commands.SLIDE:
         (pitch,) = values
-        value = _within(pitch, 0.0, HIGHEST_KEY)
+        value = number(pitch, 0.0, HIGHEST_KEY)
     elif kind == commands.DRAW:
         speed, force = values
         value, other = _setting("/bow/speed", speed)[1], _setting("/bow/force", force)[1]
     elif kind == commands.RELEASE and len(values) == 1:
-        value = _within(values[0], 0.0, 1.0)
+        value = number(values[0], 0.0, 1.0)
     elif values:
         raise ValueError("more values than it takes")
     return frame, kind, index, value, other
@@ -96,32 +102,9 @@ def ramp_of(address: str, target: Any, ramp: Any) -> tuple[int, int, float, floa
     """The fields of a ramp after its frame: also the events of version 1."""
     index = INDICES[address]
     lo, hi = (0.0, 0.0) if index == SILENCE else (ENGINE[index].lo, ENGINE[index].hi)
-    return commands.RAMP, index, _within(target, lo, hi), float(frames_of(ramp))
-
-
-def player_of(number: Any, players: int) -> int:
-    """The player of a line, counted from 0; raises ValueError."""
-    return _whole(number, 1, players) - 1
-
-
-def frames_of(value: Any) -> int:
-    """A number of frames, or another count; raises ValueError."""
-    return _whole(value, 0, MAX_FRAMES)
-
-
-def _whole(value: Any, lo: int, hi: int) -> int:
-    if type(value) is not int or not lo <= value <= hi:
-        raise ValueError(f"expected a whole number from {lo} to {hi}")
-    return value
+    return commands.RAMP, index, number(target, lo, hi), float(whole(ramp, 0, MAX_FRAMES))
 
 
 def _setting(address: str, value: Any) -> tuple[int, float]:
     index = INDEX[address]
-    return index, _within(value, TABLE[index].lo, TABLE[index].hi)
-
-
-def _within(value: Any, lo: float, hi: float) -> float:
-    number = float(value)
-    if not lo <= number <= hi:  # also refuses NaN
-        raise ValueError(f"{number} is not within {lo:g} to {hi:g}")
-    return number
+    return index, number(value, TABLE[index].lo, TABLE[index].hi)

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-from yehu_server.scores.score import Score, ScoreNote, notes_of, without_notes
+from yehu_server.scores.score import Score, ScoreNote, without_notes
 
 STRUM_S = 0.03  # from the first to the last note of a chord, as of sections
 
@@ -17,7 +17,7 @@ def without_lower_notes(score: Score, channels: Collection[int]) -> tuple[Score,
         return score, 0
     lower: list[ScoreNote] = []
     first_s, top = 0.0, None
-    for note in notes_of(score):
+    for note in score.notes:
         if note.channel not in channels:
             continue
         if top is None or note.start_s - first_s > STRUM_S or not _sound_together(top, note):

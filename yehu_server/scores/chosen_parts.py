@@ -18,7 +18,6 @@ from yehu_server.scores.score import (
     ScoreEvent,
     ScoreNote,
     ScorePart,
-    notes_of,
     transposed,
 )
 from yehu_server.scores.slides import ARTICULATION
@@ -77,8 +76,8 @@ def tune_of(score: Score, within: NoteRange = YEHU) -> int | None:
         return None
     parts: list[list[NoteSpan]] = [[] for _ in score.parts]
     find = finder_of(score.parts)
-    for note in notes_of(score):
-        at = find(note.channel, score.events[note.begins].track)
+    for note in score.notes:
+        at = find(note.channel, note.track)
         if at is not None:
             parts[at].append(NoteSpan(note.start_s, note.end_s, (float(note.key),)))
     if take_turns(parts):
@@ -115,7 +114,7 @@ def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
     that it is counted: nobody plays it unasked.
     """
     find = finder_of(kept)
-    places = {(note.channel, score.events[note.begins].track) for note in notes_of(score)}
+    places = {(note.channel, note.track) for note in score.notes}
     sounding = {track for _, track in places}
     channels = {channel for channel, track in places if find(channel, track) is not None}
 
@@ -148,9 +147,9 @@ def midi_in_range(
     by_part: dict[str, list[ScoreNote]] = {}
     by_place: dict[tuple[int, int], list[ScoreNote]] = {}  # the same, by channel and track
     find = finder_of(score.parts)
-    notes = [note for note in notes_of(score) if note.channel in channels]
+    notes = [note for note in score.notes if note.channel in channels]
     for note in notes:
-        place = note.channel, events[note.begins].track
+        place = note.channel, note.track
         if place not in by_place:
             at = find(*place)
             own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name

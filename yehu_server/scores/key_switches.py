@@ -8,7 +8,7 @@ from itertools import pairwise
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import ARTICULATIONS
-from yehu_server.scores.score import Score, ScoreEvent, ScoreNote, Setting, notes_of, without_notes
+from yehu_server.scores.score import Score, ScoreEvent, ScoreNote, Setting, without_notes
 from yehu_server.scores.slides import ARTICULATION
 
 FAR = 12  # semitones
@@ -41,7 +41,7 @@ def with_key_switches(score: Score, first: int | None, channels: Collection[int]
     read = replace(score, events=tuple(events), remarks=(*score.remarks, remark))
     if not read.notes:
         raise ScoreError(f"has no other note: {remark}")
-    sounding = {(note.channel, read.events[note.begins].track) for note in notes_of(read)}
+    sounding = {(note.channel, note.track) for note in read.notes}
     parts = [
         part
         for part in score.parts
@@ -56,9 +56,9 @@ def low_keys(score: Score, channels: Collection[int], within: NoteRange = YEHU) 
     They are below the range, and an octave or more below all others of their channel and track.
     """
     places: dict[tuple[int, int], list[ScoreNote]] = defaultdict(list)
-    for note in notes_of(score):
+    for note in score.notes:
         if note.channel in channels:
-            places[note.channel, score.events[note.begins].track].append(note)
+            places[note.channel, note.track].append(note)
     found: list[ScoreNote] = []
     for notes in places.values():
         ends = pairwise(sorted({note.key for note in notes}))

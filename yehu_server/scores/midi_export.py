@@ -12,7 +12,7 @@ from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import DEFAULT, load
-from yehu_server.scores.score import BEND, Score, Setting, notes_of
+from yehu_server.scores.score import BEND, Score, Setting
 from yehu_server.scores.written.layout import signature
 from yehu_server.scores.written.mark_settings import ARTICULATION, SLIDES
 from yehu_server.scores.written.notated import Written
@@ -54,7 +54,7 @@ def _file(
     )
     translated = _Translation()
     by_channel: dict[int, list[tuple[int, mido.Message]]] = {each: [] for each in channels}
-    lengths = {(note.channel, note.start_s): note.length_s for note in notes_of(score)}
+    lengths = {(note.channel, note.start_s): note.length_s for note in score.notes}
     for event in score.events:
         tick = _tick(beat_at(event.time_s))
         messages = by_channel[event.message.channel]

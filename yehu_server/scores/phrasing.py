@@ -15,7 +15,7 @@ from typing import Any
 
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.rubato import delayed
-from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of, says_mpe
+from yehu_server.scores.score import Score, ScoreNote, phrases_of, says_mpe
 from yehu_server.scores.slides import with_slides
 
 PHRASING = 0.5  # of files, where nothing else is asked for
@@ -51,7 +51,7 @@ def phrased(score: Score, playing: PlayingOptions) -> Score:
 
 def _phrased(score: Score, amount: float, playing: PlayingOptions) -> Score:
     by_channel: dict[int, list[ScoreNote]] = defaultdict(list)
-    for note in notes_of(score):
+    for note in score.notes:
         by_channel[note.channel].append(note)
     velocities: dict[int, int] = {}
     ends_s: dict[int, float] = {}
@@ -103,7 +103,7 @@ def is_fingered(score: Score, playing: PlayingOptions) -> bool:
 
     Only on channels of notes that are played; under MPE one part has all channels.
     """
-    channels = {note.channel for note in notes_of(score)}
+    channels = {note.channel for note in score.notes}
     if playing.mapping.mpe or says_mpe(score):
         channels = set(range(16))
     elif playing.channels is not None:

@@ -27,7 +27,6 @@ from yehu_server.scores.score import (
     ScoreEvent,
     check_duration,
     errors_name,
-    notes_of,
     says_mpe,
     seems_mpe,
 )
@@ -42,24 +41,25 @@ from yehu_server.util.files import open_regular
 
 def channels_with_notes(scores: Iterable[Score]) -> list[int]:
     """The channels that have notes, counted from 0, in order; percussion is among them."""
-    return sorted({event.message.channel for event in _notes(scores)})
+    return sorted({note.channel for score in scores for note in score.notes})
 
 
 def tracks_with_notes(
     scores: Iterable[Score], channels: Collection[int] = chosen_parts.MELODIC
 ) -> list[int]:
     """The tracks that have notes on some channels, counted from 1, in order."""
-    return sorted({event.track for event in _notes(scores) if event.message.channel in channels})
+    notes = (note for score in scores for note in score.notes)
+    return sorted({note.track for note in notes if note.channel in channels})
 
 
 def shares_channels(scores: Iterable[Score]) -> bool:
     """Whether tracks that sound at once have notes on one channel; percussion does not count."""
     for score in scores:
         tracks: dict[int, dict[int, list[NoteSpan]]] = defaultdict(lambda: defaultdict(list))
-        for note in notes_of(score):
+        for note in score.notes:
             if note.channel in chosen_parts.MELODIC:
                 span = NoteSpan(note.start_s, note.end_s, (float(note.key),))
-                tracks[note.channel][score.events[note.begins].track].append(span)
+                tracks[note.channel][note.track].append(span)
         if not all(take_turns([*each.values()]) for each in tracks.values()):
             return True
     return False
@@ -74,13 +74,13 @@ def part_name(scores: Sequence[Score], channel: int | None = None, track: int | 
             return name
     if channel is None:
         return numbered
-    tracks = {event.track for event in _notes(scores[:1]) if event.message.channel == channel}
+    tracks = {note.track for note in scores[0].notes if note.channel == channel}
     return found.get((None, min(tracks)), numbered) if len(tracks) == 1 else numbered
 
 
 def percussion_notes(scores: Iterable[Score]) -> int:
     """Number of notes on channel 10."""
-    return sum(event.message.channel == PERCUSSION_CHANNEL for event in _notes(scores))
+    return sum(note.channel == PERCUSSION_CHANNEL for score in scores for note in score.notes)
 
 
 def part_of(score: Score, channel: int | None = None, track: int | None = None) -> Score:
@@ -89,8 +89,8 @@ def part_of(score: Score, channel: int | None = None, track: int | None = None) 
     Messages for all, such as a reset, are in each part. Controllers that a file has in a track
     without notes belong to all tracks that play on their channel.
     """
-    sounding = {event.track for event in _notes([score])}
-    on = {_channel(event) for event in _notes([score]) if event.track == track}
+    sounding = {note.track for note in score.notes}
+    on = {note.channel for note in score.notes if note.track == track}
 
     def is_kept(event: ScoreEvent) -> bool:
         own = _channel(event)
@@ -98,18 +98,6 @@ def part_of(score: Score, channel: int | None = None, track: int | None = None) 
         return own is None or (channel in (own, None) and (track is None or is_in_track))
 
     return replace(score, events=tuple(filter(is_kept, score.events)))
-
-
-def has_notes(scores: Sequence[Score]) -> bool:
-    """Whether there is a note in some scores."""
-    return any(True for _ in _notes(scores))
-
-
-def _notes(scores: Iterable[Score]) -> Iterable[ScoreEvent]:
-    for score in scores:
-        for event in score.events:
-            if event.message.type == "note_on" and event.message.velocity > 0:
-                yield event
 
 
 def _channel(event: ScoreEvent) -> int | None:
@@ -249,7 +237,7 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
     elif len(score.parts) > 1 and not (options.all_parts or is_mpe):
         is_usual = options.within == YEHU
         score = tune if is_usual else chosen_parts.default_midi_part(score, options.within)
-    if not has_notes([score]):
+    if not score.notes:
         line = "has controllers and no note: nothing sounds"
         score = replace(score, remarks=(*score.remarks, line))
     elif options.in_range:

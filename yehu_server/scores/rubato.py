@@ -12,7 +12,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
-from yehu_server.scores.score import Score, ScoreNote, notes_of, phrases_of
+from yehu_server.scores.score import Score, ScoreNote, phrases_of
 
 # At full rubato: a beat at either end of a phrase is two thirds of this longer, one in its middle a
 # third shorter.
@@ -39,7 +39,7 @@ def midi_delays(score: Score, tune: Score) -> Delays:
 
 
 def _melodic(score: Score) -> list[ScoreNote]:
-    return [note for note in notes_of(score) if note.channel != PERCUSSION_CHANNEL]
+    return [note for note in score.notes if note.channel != PERCUSSION_CHANNEL]
 
 
 def is_in_time(notes: Sequence[ScoreNote]) -> bool:

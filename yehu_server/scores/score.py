@@ -174,7 +174,7 @@ class Score:
 
     @cached_property
     def notes(self) -> tuple[ScoreNote, ...]:
-        """Its notes; see `notes_of`."""
+        """Its note-ons, in order, with what ends them, as a key struck again does."""
         return tuple(_paired(self))
 
     def __post_init__(self) -> None:
@@ -214,6 +214,7 @@ class ScoreNote(NamedTuple):
     start_s: float
     end_s: float
     beat: float  # quarter notes since the beginning of the score; NaN where it has none
+    track: int = 0  # as of its events
 
     @property
     def length_s(self) -> float:
@@ -221,15 +222,10 @@ class ScoreNote(NamedTuple):
         return self.end_s - self.start_s
 
 
-def notes_of(score: Score) -> list[ScoreNote]:
-    """Note-ons with what ends them, as a key struck again does, in order of their beginnings."""
-    return list(score.notes)
-
-
 def _paired(score: Score) -> Iterator[ScoreNote]:
     held: dict[tuple[int, int], list[Any]] = {}
     found: list[list[Any]] = []
-    for number, (time_s, message, beat, _) in enumerate(score.events):
+    for number, (time_s, message, beat, track) in enumerate(score.events):
         kind = message.type
         if kind not in ("note_on", "note_off"):
             continue
@@ -238,7 +234,7 @@ def _paired(score: Score) -> Iterator[ScoreNote]:
             begun = held.pop(key)
             begun[1], begun[6] = number, time_s
         if kind == "note_on" and (velocity := message.velocity) > 0:
-            begun = [number, -1, channel, note, velocity, time_s, score.duration_s, beat]
+            begun = [number, -1, channel, note, velocity, time_s, score.duration_s, beat, track]
             held[key] = begun
             found.append(begun)
     return map(ScoreNote._make, found)
@@ -266,7 +262,7 @@ def says_mpe(score: Score) -> bool:
 def seems_mpe(score: Score) -> bool:
     """Whether each of several channels but the first has notes and a pressure, as of MPE."""
     pressed = {e.message.channel for e in score.events if e.message.type == "aftertouch"}
-    played = {note.channel for note in notes_of(score)}
+    played = {note.channel for note in score.notes}
     return len(played) >= MPE_FROM and 0 not in played and played <= pressed
 
 

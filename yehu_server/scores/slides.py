@@ -26,7 +26,7 @@ from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.stringing import notes_of as range_of
-from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, Setting, notes_of
+from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, Setting
 
 ARTICULATION, STRING = "/playing/articulation", "/playing/string"
 PHRASING, PIZZICATO, PORTAMENTO = "/playing/phrasing", "/playing/pizzicato", "/playing/portamento"
@@ -114,7 +114,7 @@ def _slides(
     score: Score, amount: float, playing: PlayingOptions, within: NoteRange
 ) -> Iterator[Slide]:
     """The slides that bow and fingers are free for, over leaps and over some steps."""
-    notes = [note for note in notes_of(score) if note.channel != PERCUSSION_CHANNEL]
+    notes = [note for note in score.notes if note.channel != PERCUSSION_CHANNEL]
     states = _states(score, playing, amount)
     for note, after in pairwise(notes):
         is_one = note.channel == after.channel and note.ends >= 0

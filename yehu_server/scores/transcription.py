@@ -34,7 +34,6 @@ from yehu_server.scores.score import (
     ScoreEvent,
     ScorePart,
     errors_name,
-    notes_of,
     says_mpe,
 )
 from yehu_server.scores.smf.reader import read_score
@@ -94,7 +93,7 @@ def read_as_written(
 
 def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, dict[str, int]]:
     """A MIDI file as written, and counts of what is left out; `tempo` where it has only frames."""
-    notes = notes_of(score)
+    notes = score.notes
     higher = transposed_keys(score)
     by_frames = any(math.isnan(note.beat) for note in notes)
     is_mpe = says_mpe(score)
@@ -106,7 +105,7 @@ def written_of_midi(score: Score, tempo: float | None = None) -> tuple[Written, 
         if note.channel == PERCUSSION_CHANNEL and not is_mpe:
             percussion += 1
             continue
-        at = find(note.channel, score.events[note.begins].track)
+        at = find(note.channel, note.track)
         if at is not None:
             end = score.events[note.ends].beat if note.ends >= 0 else note.beat + 1.0
             begin, end = (note.start_s, note.end_s) if by_frames else (note.beat, end)

@@ -6,6 +6,7 @@ rewritten after every block of 4096 samples, so that a crash loses less than a t
 
 import contextlib
 import io
+import math
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,8 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 class FlacStream:
     """Writes FLAC of 1 to `MAX_CHANNELS` (more than two are around the listener); as WavStream."""
+
+    most_frames = math.inf
 
     def __init__(
         self, file: io.FileIO, rate: int, subtype: str, software: str = "", *, channels: int = 1

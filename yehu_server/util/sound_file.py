@@ -4,7 +4,7 @@ import contextlib
 import io
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, ClassVar
 
 import numpy as np
 import soundfile
@@ -16,7 +16,11 @@ from yehu_server.util.flac_stream import FlacStream
 from yehu_server.util.subtypes import FORMATS, SUBTYPES
 from yehu_server.util.wav_stream import WavStream
 
-MAX_CHANNELS = {"wav": wav_stream.MAX_CHANNELS, "flac": flac_stream.MAX_CHANNELS}
+MAX_CHANNELS = {
+    "wav": wav_stream.MAX_CHANNELS,
+    "flac": flac_stream.MAX_CHANNELS,
+    "raw": wav_stream.MAX_CHANNELS,
+}
 RENDERED = "yehu-server render"  # software named in a rendered file, which may be replaced
 
 Samples = np.ndarray[Any, np.dtype[np.float32]]
@@ -35,6 +39,8 @@ class SoundWriter:
     Raises OutputError, from all methods too; what was written before stays valid.
     """
 
+    STREAMS: ClassVar[dict[str, Any]] = {"wav": WavStream, "flac": FlacStream}
+
     def __init__(
         self,
         file: io.FileIO,
@@ -47,29 +53,24 @@ class SoundWriter:
         channels: int = 1,
     ) -> None:
         check_format(format_name, subtype, channels)
-        is_wav = format_name == "wav"
         self._target = target
         self._channels = channels
-        most = wav_stream.WAV_LIMIT // (channels * SUBTYPES[subtype].size)
-        self._limit = most if is_wav else None
         self.frames = 0
         self.peak = 0.0
         self._power = 0.0
         with self._converting_errors():
-            make = WavStream if is_wav else FlacStream
-            self._stream: WavStream | FlacStream = make(
-                file, rate, subtype, software, channels=channels
-            )
+            make = self.STREAMS[format_name]
+            self._stream = make(file, rate, subtype, software, channels=channels)
 
     @property
     def written_frames(self) -> int:
         """Number of frames in the file; an encoder may hold back more."""
-        return self._stream.frames
+        return int(self._stream.frames)
 
     def write(self, samples: Samples) -> None:
         """Append samples [shape=(frames,) of one channel, or (frames, channels); full scale 1]."""
         self.frames += len(samples)
-        if self._limit is not None and self.frames > self._limit:
+        if self.frames > self._stream.most_frames:
             instead = "; use FLAC" if self._channels <= flac_stream.MAX_CHANNELS else ""
             raise OutputError(f"{self._target}: too long for a WAV file (4 GiB){instead}")
         highest, lowest = samples.max(initial=0.0), samples.min(initial=0.0)
@@ -87,6 +88,8 @@ class SoundWriter:
     def _converting_errors(self) -> Iterator[None]:
         try:
             yield
+        except BrokenPipeError:  # whoever reads has had enough
+            raise
         except OSError as error:
             raise OutputError(f"{self._target}: cannot write: {error_reason(error)}") from error
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Subtype(NamedTuple):
-    """A format of samples: bytes of one, libsndfile's name, the formats of files that have it."""
+    """A format of samples: bytes of one, libsndfile's name, the formats that have it."""
 
     size: int
     name: str
@@ -12,9 +12,9 @@ class Subtype(NamedTuple):
 
 
 SUBTYPES = {
-    "16": Subtype(2, "PCM_16", ("wav", "flac")),
-    "24": Subtype(3, "PCM_24", ("wav", "flac")),
-    "float": Subtype(4, "FLOAT", ("wav",)),
+    "16": Subtype(2, "PCM_16", ("wav", "flac", "raw")),
+    "24": Subtype(3, "PCM_24", ("wav", "flac", "raw")),
+    "float": Subtype(4, "FLOAT", ("wav", "raw")),
 }
 FORMATS = ("wav", "flac")  # of files
 DEFAULT_SUBTYPES = {"wav": "float", "flac": "24"}  # of recordings and replays

@@ -45,6 +45,7 @@ class WavStream:
         self._subtype = subtype
         self._channels = channels
         self._frame_bytes = channels * SUBTYPES[subtype].size
+        self.most_frames: float = WAV_LIMIT // self._frame_bytes
         self._about = _about(software)
         self._header_bytes = len(self._header())
         write_all(file, self._header())

@@ -109,11 +109,11 @@ def test_what_a_stranger_answers_is_no_finding_and_workers_that_die_are_reported
 
         def perform_all(perform, tasks):
             for job, task in enumerate(tasks):
-                yield Event(job, 1.0, result=answer(perform(task)))
+                yield Event(job, result=answer(perform(task)))
 
         return SimpleNamespace(perform_all=perform_all)
 
-    dead = SimpleNamespace(is_end=True, died="4 workers", job=0, result=None)
+    dead = SimpleNamespace(died="4 workers", job=0, result=None)
     no_findings = "a worker's answer is not a result"
     for cluster, told in (
         *((answers(lambda _, each=each: each), no_findings) for each in (None, b"", [1], 5)),

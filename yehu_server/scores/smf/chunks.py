@@ -1,4 +1,4 @@
-"""Find the chunks of a MIDI file, also within RIFF, a MacBinary header or a mail.
+"""Find the chunks of a MIDI file, also within RIFF, or behind a mail or a MacBinary header.
 
 An error names the kind of a file that is no MIDI file, so that its owner knows what to do with it.
 Headers and tracks are found also where lengths are wrong.
@@ -13,7 +13,6 @@ from yehu_server.scores.smf.track import DamageReport, KnownMessages, Track, dec
 
 JUNK_BYTES = 65_536  # among which a header is searched
 HEADER = b"MThd\0\0\0"  # with the length that all headers have, so that prose is none
-MAC_BYTES = 128  # of a MacBinary header
 MAX_PARTS = 131_070  # of a RIFF file
 
 # Where, which bytes, and what they begin. An archive may have a MIDI file within as it is, but
@@ -63,9 +62,9 @@ OURS = (b"MThd", b"MTrk")
 
 def unwrapped(data: bytes, faults: DamageReport) -> tuple[int, int]:
     """Return where the MIDI file begins and ends. Raises ScoreError where no header is found."""
-    start, end = _of_macintosh(data)
-    if data[start : start + 4] == b"RIFF" and data[start + 8 : start + 12] == b"RMID":
-        start, end = _of_riff(data, start, end)
+    start, end = 0, len(data)
+    if data[:4] == b"RIFF" and data[8:12] == b"RMID":
+        start, end = _of_riff(data)
     if data[start : start + 4] == b"MThd":
         return start, end
     archive = _kind_of(data, ARCHIVES)
@@ -77,29 +76,18 @@ def unwrapped(data: bytes, faults: DamageReport) -> tuple[int, int]:
     return found, end
 
 
-def _of_macintosh(data: bytes) -> tuple[int, int]:
-    """The bytes within a MacBinary header and what follows it, or all."""
-    whole = 0, len(data)
-    if len(data) < MAC_BYTES or data[0] or not 0 < data[1] < 64 or data[74]:
-        return whole
-    if data[MAC_BYTES : MAC_BYTES + 4] not in (b"MThd", b"RIFF"):
-        return whole
-    length = int.from_bytes(data[83:87], "big")
-    return MAC_BYTES, min(MAC_BYTES + length, len(data)) if length else len(data)
-
-
-def _of_riff(data: bytes, start: int, end: int) -> tuple[int, int]:
+def _of_riff(data: bytes) -> tuple[int, int]:
     """The bytes within the wrapper; its lengths are little-endian, its parts are padded."""
-    pos = start + 12
+    pos, end = 12, len(data)
     for _ in range(MAX_PARTS):
         if pos + 8 > end:
             break
         length = int.from_bytes(data[pos + 4 : pos + 8], "little")
         if data[pos : pos + 4] == b"data":
             inside = data[pos + 8 : pos + 12] == b"MThd"
-            return (pos + 8, min(pos + 8 + length, end)) if inside else (start, end)
+            return (pos + 8, min(pos + 8 + length, end)) if inside else (0, end)
         pos += 8 + length + length % 2
-    return start, end
+    return 0, end
 
 
 def _kind_of(data: bytes, kinds: tuple[tuple[int, bytes, str], ...]) -> str:

@@ -17,7 +17,7 @@ export WINEPREFIX=$windows/prefix WINEDEBUG=-all WINEARCH=win64
 
 windows_setup() {
     local made_from
-    made_from="$(fingerprint) $(cksum <"$root/scripts/lib/windows.sh") $(cksum <"$root/scripts/lib/wine_complex.py")"
+    made_from="$(fingerprint) $(cksum <"$root/scripts/lib/windows.sh") $(cksum <"$root/scripts/lib/windows_binaries.py")"
     [ "$(cat "$windows/stamp" 2>/dev/null)" = "$made_from" ] && return
     mkdir -p "$windows"
     log=$windows/setup.log
@@ -55,9 +55,10 @@ windows_install() {
     cp "$windows"/frozen/deploy_libs/*.dll "$python/"
     cp "$windows"/frozen/deploy_libs/{*.pyd,lib*.dll} "$python/DLLs/"
     rm -f "$python"/api-ms-win-crt-*.dll # wine has its own
-    windows_launcher "$python" "python${version/./}" || return
-    logged "$venv/bin/python" scripts/lib/wine_complex.py "$windows"
-    rm -rf "$windows/frozen"
+    # Where it looks: PYTHONPATH has no say then.
+    printf '%s\r\n' Lib DLLs 'Lib\site-packages' "$(windows_path "$root")" . >"$python/python${version/./}._pth"
+    logged "$venv/bin/python" scripts/lib/windows_binaries.py "$windows" || return
+    rm -rf "$windows"/{frozen,linked}
 }
 
 # Adds the DLLs of sound: uv prefers the wheels of these two that have none.
@@ -69,21 +70,6 @@ windows_libraries() {
     rm -rf "$1"/soundfile-*.dist-info "$1"/sounddevice-*.dist-info
     logged pip_install --require-hashes --no-deps --upgrade --target "$1" --platform win_amd64 \
         --only-binary :all: -r "$windows/sound.lock"
-}
-
-# Writes python.exe, and the file that tells it where to look: PYTHONPATH has no say then.
-windows_launcher() {
-    local zig=(env "PYTHONPATH=$windows/tools" "$venv/bin/python" -m ziglang)
-    (
-        cd "$1" || exit
-        printf '__declspec(dllimport) int Py_Main(int, wchar_t **);
-int wmain(int count, wchar_t **words) { return Py_Main(count, words); }\n' >launcher.c
-        printf 'LIBRARY %s.dll\nEXPORTS\nPy_Main\n' "$2" >launcher.def
-        logged "${zig[@]}" dlltool -m i386:x86-64 -d launcher.def -l launcher.lib
-        logged "${zig[@]}" cc -target x86_64-windows-gnu -municode -include stddef.h launcher.c launcher.lib -o python.exe
-        rm launcher.*
-        printf '%s\r\n' Lib DLLs 'Lib\site-packages' "$(windows_path "$root")" . >"$2._pth"
-    )
 }
 
 windows_path() {

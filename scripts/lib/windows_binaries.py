@@ -1,9 +1,11 @@
-"""Give extension modules the complex functions that Debian 12's wine lacks.
+"""Link python.exe, and give modules the complex functions that Debian 12's wine lacks.
 
-    wine_complex.py FOLDER    scripts/lib/windows.sh has made it
+    windows_binaries.py FOLDER    scripts/lib/windows.sh has made it
 
 numpy imports them from Windows' C library. A DLL of another name has them instead and forwards the
 rest, and that name replaces the library's in each module. Good enough for what the tests compute.
+
+Both call that library by name alone: mingw's own part of it takes zig many minutes to compile.
 """
 
 import os
@@ -12,8 +14,21 @@ import sys
 from pathlib import Path
 
 FOLDER = Path(sys.argv[1])
+PYTHON = FOLDER / "python"
 sys.path.append(str(FOLDER / "tools"))
+LAUNCHER = """
+int Py_Main(int, unsigned short **), *__p___argc(void);
+unsigned short ***__p___wargv(void);
+void _configure_wide_argv(int), exit(int);
+void start(void) {
+    _configure_wide_argv(1); /* without wildcards */
+    exit(Py_Main(*__p___argc(), *__p___wargv()));
+}
+"""
+LAUNCHED = ("_configure_wide_argv", "__p___argc", "__p___wargv", "exit")
 LIBRARY, SHIM = b"api-ms-win-crt-math-l1-1-0.dll", b"yeh-ms-win-crt-math-l1-1-0.dll"
+# What it computes by, of one number and of two.
+UNARY, BINARY = ("cos", "cosh", "exp", "log", "sin", "sinh", "sqrt"), ("atan2", "hypot")
 REAL = {"real": "re", "imag": "im", "abs": "hypot(re, im)", "arg": "atan2(im, re)"}
 # Each by real functions of the real part and the imaginary one, which wine has.
 COMPLEX = {
@@ -52,7 +67,7 @@ def imported() -> dict[str, set[Path]]:
     import pefile
 
     found: dict[str, set[Path]] = {}
-    for file in sorted((FOLDER / "python/Lib/site-packages").rglob("*")):
+    for file in sorted((PYTHON / "Lib/site-packages").rglob("*")):
         if file.suffix not in (".pyd", ".dll") or LIBRARY not in file.read_bytes():
             continue
         pe = pefile.PE(file, fast_load=True)
@@ -86,21 +101,59 @@ def written(name: str) -> str:
     return ""
 
 
+def link(name: str, source: str, imports: dict[str, tuple[str, ...]], *options: str) -> None:
+    """Link C into a file beside Python, with functions of other DLLs, by options of lld-link."""
+    work = FOLDER / "linked" / name
+    work.mkdir(parents=True, exist_ok=True)
+    for library, functions in imports.items():
+        definitions = "\n".join([f"LIBRARY {library}.dll", "EXPORTS", *functions, ""])
+        (work / f"{library}.def").write_text(definitions)
+        zig(
+            "dlltool",
+            "-m",
+            "i386:x86-64",
+            "-d",
+            f"{library}.def",
+            "-l",
+            f"{library}.lib",
+            work=work,
+        )
+    (work / "code.c").write_text(source)
+    flags = ("-target", "x86_64-windows-gnu", "-O1", "-fno-builtin")
+    zig("cc", *flags, "-c", "code.c", "-o", "code.obj", work=work)
+    libraries = [f"{library}.lib" for library in imports]
+    zig("lld-link", *options, f"/out:{PYTHON / name}", "code.obj", *libraries, work=work)
+
+
+def zig(*words: str, work: Path) -> None:
+    """Run zig in a folder."""
+    subprocess.run(  # noqa: S603
+        [sys.executable, "-m", "ziglang", *words],
+        check=True,
+        cwd=work,
+        env={**os.environ, "PYTHONPATH": str(FOLDER / "tools")},
+    )
+
+
 def main() -> None:
+    version = "".join(map(str, sys.version_info[:2]))
+    link(
+        "python.exe",
+        LAUNCHER,
+        {f"python{version}": ("Py_Main",), "ucrtbase": LAUNCHED},
+        *("/entry:start", "/subsystem:console"),
+    )
     found = imported()
     source = {name: text for name in found if (text := written(name))}
-    forwarded = [name for name in found if name not in source]
-    code, exports = FOLDER / "complex.c", FOLDER / "complex.def"
-    code.write_text("\n".join(["#include <math.h>", *source.values(), ""]))
-    lines = [f"LIBRARY {SHIM.decode()}", "EXPORTS"]
-    lines += [f"{name} = own_{name}" for name in source]
-    lines += [f"{name} = ucrtbase.{name}" for name in forwarded]
-    exports.write_text("\n".join([*lines, ""]))
-    command = [sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu", "-shared"]
-    subprocess.run(  # noqa: S603
-        [*command, "-O1", "-fno-builtin", "-o", FOLDER / "python" / SHIM.decode(), code, exports],
-        check=True,
-        env={**os.environ, "PYTHONPATH": str(FOLDER / "tools")},
+    declared = [f"double {name}(double);" for name in UNARY]
+    declared += [f"double {name}(double, double);" for name in BINARY]
+    exports = [f"{name}=own_{name}" for name in source]
+    exports += [f"{name}=ucrtbase.{name}" for name in found if name not in source]
+    link(
+        SHIM.decode(),
+        "\n".join([*declared, *source.values()]),
+        {"ucrtbase": UNARY + BINARY},
+        *("/dll", "/noentry", *(f"/export:{each}" for each in exports)),
     )
     for file in set().union(*found.values()):
         file.write_bytes(file.read_bytes().replace(LIBRARY, SHIM))

@@ -41,10 +41,10 @@ def test_a_mark_belongs_to_the_note_before_it(subtests):
         ("->", Mark("accent")),
         ("-^", Mark("marcato")),
         ("\\fermata", Mark("fermata")),
-        ("\\trill", Mark("trill")),
-        ("\\mordent", Mark("mordent")),
-        ("\\prall", Mark("inverted-mordent")),
-        ("\\turn", Mark("turn")),
+        ("\\trill", Mark("trill", 2.0)),
+        ("\\mordent", Mark("mordent", 2.0)),
+        ("\\prall", Mark("inverted-mordent", 2.0)),
+        ("\\turn", Mark("turn", 2.0, 2.0)),
         ("Fr=0", Mark("finger", 0)),
         ("Fr=3", Mark("finger", 3)),
         ("Fr=内", Mark("inner-string")),
@@ -59,7 +59,7 @@ def test_a_mark_belongs_to_the_note_before_it(subtests):
             assert second.marks == (mark,)
             assert not first.marks
             assert not third.marks
-            assert part(f"1 - {word}").notes[0].marks == (mark,)
+            assert part(f"2 - {word}").notes[0].marks == (mark,)
 
 
 def test_slides_and_glissandi_are_written_before_their_note():

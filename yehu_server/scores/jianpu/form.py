@@ -9,6 +9,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.jianpu.text import Word, failure
 from yehu_server.scores.written.notated import Grace
+from yehu_server.scores.written.ornaments import HALF, WHOLE, Around
 from yehu_server.scores.written.words import Meaning
 
 UNFIT = "bar lines do not fit the metre"
@@ -79,6 +80,8 @@ class Element:
     pitch: float | None = None  # MIDI note; None for a rest or dash
     other: float | None = None  # the other note of a tremolo between two
     living: str = ""  # the character, of a living note of 二四谱
+    fifths: int | None = None  # of the key, where one is written
+    around: Around = (WHOLE, HALF)
     before: tuple[Grace, ...] = ()
     after: tuple[Grace, ...] = ()
     actions: list[Meaning] = field(default_factory=list)  # what the words after it do, in order

@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Callable
 from fractions import Fraction
+from operator import itemgetter
 
 from yehu_server.scores.jianpu.form import (
     JUMPS,
@@ -27,6 +28,7 @@ from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Word, failure
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO, Grace
+from yehu_server.scores.written.ornaments import WAYS
 from yehu_server.scores.written.words import Meaning
 
 MAX_TUPLET, MAX_BARS_REST = 64, 1000
@@ -69,6 +71,7 @@ class PartParser:
         self._ahead: list[Meaning] = []
         self._graces: tuple[Grace, ...] = ()
         self._last: Element | None = None
+        self._figure: Figure | None = None  # of the last note
         self._count = 0
         self._skips = False  # the argument of \bar
         self._ways: tuple[Callable[[Word], bool], ...] = (
@@ -128,7 +131,7 @@ class PartParser:
             self._add(Element(Kind.DASH, length), word)
 
     def _add_note(self, note: NoteWord, figures: tuple[Figure, ...], word: Word) -> None:
-        element = Element(note.kind, self._length(note))
+        element = Element(note.kind, self._length(note), fifths=self.scale.fifths)
         if note.kind is Kind.BEAT:
             self.notices["beats of percussion (x), played as rests"] += 1
         if figures:
@@ -148,7 +151,7 @@ class PartParser:
     ) -> None:
         single = len(figures) == 1
         pitches = [self.scale.pitch(figure, word, shifted=single) for figure in figures]
-        element.pitch = max(pitches)
+        element.pitch, self._figure = max(zip(pitches, figures, strict=True), key=itemgetter(0))
         if tremolo and len(figures) == 2:
             element.pitch, element.other = pitches
         elif tremolo:
@@ -202,6 +205,8 @@ class PartParser:
         if self._last is None:  # before the first note: a moment without length
             self._last = Element(Kind.REST, Fraction(0))
             self._braces.add(self._last)
+        if action.name in WAYS and self._figure is not None:
+            self._last.around = self.scale.around(self._figure)
         self._last.actions.append(action)
         return True
 

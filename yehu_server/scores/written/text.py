@@ -105,7 +105,10 @@ def _around(written: Written, part: Part) -> dict[Fraction, list[str]]:
 def _mark(mark: Mark) -> str:
     if mark.name in ("articulation", "gesture") and mark.value in ARTICULATED:
         return ARTICULATED[mark.value]
-    return mark.name if mark.value is None else f"{mark.name} {mark.value:g}"
+    if mark.value is None:
+        return mark.name
+    values = [value for value in (mark.value, mark.second) if value is not None]
+    return " ".join([mark.name, *(f"{value:g}" for value in values)])
 
 
 def _graces(where: str, graces: tuple[Grace, ...]) -> Iterator[str]:

@@ -215,6 +215,14 @@ def spelled(pitch: float, fifths: int) -> tuple[int, float, int]:
     return letter, alter + round(pitch - key, 6), octave
 
 
+def name_of(pitch: float, fifths: int) -> str:
+    """The name of a pitch in a key, such as Bb4, or A4+12 (cents)."""
+    letter, alter, octave = spelled(pitch, fifths)
+    sign = math.floor(alter + 0.5)
+    cents = round(100.0 * (alter - sign))
+    return f"{LETTERS[letter]}{'#' * sign}{'b' * -sign}{octave}{f'{cents:+d}' if cents else ''}"
+
+
 def key_alter(letter: int, fifths: int) -> int:
     """The accidental that a key gives a letter."""
     return -((FIFTHS[letter] - fifths + 1) // 7)

@@ -321,6 +321,11 @@ class Written:
         """The beat at which the last note ends."""
         return max((note.end for part in self.parts for note in part.notes), default=Fraction(0))
 
+    def fifths_at(self, beat: Fraction) -> int:
+        """The sharps of the key at a beat, below 0 flats; without a key 0."""
+        at = bisect_right(self.keys, beat, key=lambda key: key.beat)
+        return self.keys[at - 1].fifths if at else 0
+
     def place(self, beat: Fraction) -> tuple[str, Fraction]:
         """The bar of a beat, by its number, and the quarters since that bar began, from 0."""
         if self.bars:

@@ -127,6 +127,12 @@ class RepeatStack:
         """Add an element to the innermost open repeat."""
         self._stack[-1].elements.append(element)
 
+    @property
+    def is_beginning(self) -> bool:
+        """Whether a repeat, or an ending, has no note yet."""
+        begun = any(isinstance(each, Element | Repeat) for each in self._stack[-1].elements)
+        return len(self._stack) > 1 and not begun
+
     def open_repeat(self, times: str, word: Word, *, signs: bool = False) -> None:
         """Begin a repeat. Raises ScoreError beyond its bounds."""
         if len(times) > 4 or int(times) > MAX_TIMES:

@@ -49,6 +49,17 @@ def test_a_dynamic_within_a_held_note_is_shown_at_that_note(command, tmp_path):
     assert marks[1] == ["[pp]", "from", "quarter", "3"]
 
 
+def test_notes_are_named_as_their_key_has_them(command, tmp_path):
+    tune = tmp_path / "tune.abc"
+    tune.write_text("X:1\nL:1/4\nK:Bb transpose=-2\nBcde|[K:D]c^d=c_c|\n", encoding="utf-8")
+    lines = command("score", "show", tune)[1].splitlines()
+    assert "bar 1: 1=Ab" in lines
+    names = [
+        line[17:].split()[0] for line in lines[lines.index("bar 1: 1=Ab") :] if line[:4] == "    "
+    ]
+    assert names == ["Ab4", "Bb4", "C5", "Db5", "B4", "C#5", "Bb4", "A4"]
+
+
 def test_a_score_is_shown_as_json(command, tune):
     shown = json.loads(command("score", "show", tune, "--json")[1])
     assert shown["title"] == "A tune"

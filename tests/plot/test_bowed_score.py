@@ -1,10 +1,13 @@
 """The picture of a score as it will be bowed: strokes and strings as the player has them."""
 
 from fractions import Fraction
+from unittest.mock import Mock
 
+import numpy as np
 import pytest
 
-from yehu_server.plot.bowed_score import string_of
+from yehu_server.plot import png
+from yehu_server.plot.bowed_score import BOW, LOUD, string_of, write_bowed_score
 from yehu_server.plot.strokes import strokes_of
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.written.mark_settings import DOWN, UP
@@ -58,3 +61,51 @@ def test_a_score_is_drawn_and_its_picture_replaced_by_that_of_another(
     assert target.read_bytes() != data
     assert "a picture is a .png file" in refused(*words[:-1], tmp_path / "score.pdf")
     assert "has no part Flute" in refused(*words, "--part", "Flute")
+
+
+@pytest.fixture
+def drawn(monkeypatch, tmp_path):
+    """Draw a jianpu text: for each line of the picture its texts, and its curves in order."""
+
+    panels = [Mock(), Mock()]
+    figure = Mock(subplots=lambda rows, *_, **__: np.array(panels[:rows]).reshape(-1, 1))
+    monkeypatch.setattr(png, "write_picture", lambda _to, _size, fill, **_: fill(figure))
+
+    def draw(text):
+        for each in panels:
+            each.reset_mock()
+        write_bowed_score(parse_jianpu(text.encode()), 0, tmp_path / "score.png")
+        texts = [[call.args[2] for call in each.text.call_args_list] for each in panels]
+        curves = [
+            [(*map(list, call.args[:2]), call.kwargs["color"]) for call in each.plot.call_args_list]
+            for each in panels
+        ]
+        return [*zip(texts, curves, strict=True)]
+
+    return draw
+
+
+def test_a_hairpin_that_ends_within_a_tied_note_opens_to_its_own_side(drawn):
+    for sign, is_wide_first in (("\\>", True), ("\\<", False)):
+        (_, curves), _ = drawn(f"3/4 5 {sign} - - ~ | 5 - \\! - | 1 - -")
+        for xs, ys, color in curves:
+            if color == LOUD:
+                assert (ys[0] == -1.85) == (xs[0] > xs[1] if is_wide_first else xs[0] < xs[1])
+                assert max(xs) > 1.0  # in the second bar
+
+
+def test_each_mark_of_an_ornament_and_each_slide_and_change_of_tempo_is_drawn(drawn):
+    (texts, _), _ = drawn(
+        '1 \\turn 2 \\reverseturn 3 \\mordent 4 \\prall | 1 ^"rit." 2 3 \\glissando 4 |'
+    )
+    assert {"turn", "inv. turn", "mord.", "inv. mord.", "rit.", "gliss."} <= {*texts}
+
+
+def test_a_brace_goes_on_open_in_the_next_line(drawn):
+    braces = [
+        [ys for _, ys, color in curves if color == BOW and len(ys) > 1]
+        for _, curves in drawn("4=200 4/4 1 2 3 4 | 1 2 3 4 | 1 2 3 4 | 1 2 3 4 ( | 3 ) 2 1 - |")
+    ]
+    assert [len(ys) for ys in braces[0]] == [3]  # one end
+    assert braces[0][-1][0] < braces[0][-1][-1]
+    assert braces[1][0] == braces[0][-1][::-1]

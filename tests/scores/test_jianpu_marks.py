@@ -41,10 +41,10 @@ def test_a_mark_belongs_to_the_note_before_it(subtests):
         ("->", Mark("accent")),
         ("-^", Mark("marcato")),
         ("\\fermata", Mark("fermata")),
-        ("\\trill", Mark("trill")),
-        ("\\mordent", Mark("mordent")),
-        ("\\prall", Mark("inverted-mordent")),
-        ("\\turn", Mark("turn")),
+        ("\\trill", Mark("trill", 2.0)),
+        ("\\mordent", Mark("mordent", 2.0)),
+        ("\\prall", Mark("inverted-mordent", 2.0)),
+        ("\\turn", Mark("turn", 2.0, 2.0)),
         ("Fr=0", Mark("finger", 0)),
         ("Fr=3", Mark("finger", 3)),
         ("Fr=内", Mark("inner-string")),
@@ -59,7 +59,7 @@ def test_a_mark_belongs_to_the_note_before_it(subtests):
             assert second.marks == (mark,)
             assert not first.marks
             assert not third.marks
-            assert part(f"1 - {word}").notes[0].marks == (mark,)
+            assert part(f"2 - {word}").notes[0].marks == (mark,)
 
 
 def test_slides_and_glissandi_are_written_before_their_note():
@@ -136,6 +136,32 @@ def test_a_ritardando_ends_at_the_next_tempo():
     assert [(tempo.beat, tempo.quarters_per_minute) for tempo in score.tempi] == [(0, 90), (3, 90)]
     (span,) = parse_jianpu(b'1 ^"rit." ' + b"1 " * 40).parts[0].spans
     assert span.end - span.begin == 8  # without an end, two bars
+
+
+def test_notes_may_be_joined_to_one_word(subtests):
+    for text, notes, slurs in (
+        ("1~1", [2], []),
+        ("1 ~1 2", [2, 1], []),
+        ("(1~1)2", [2, 1], []),
+        ("1(2 3)4", [1, 1, 1, 1], [(0, 2)]),
+        ("(1 2~2)", [1, 2], [(0, 1)]),
+    ):
+        with subtests.test(text):
+            played = part(text)
+            assert [each.length for each in played.notes] == notes
+            assert [(each.begin, each.end) for each in played.spans] == slurs
+    assert parse_jianpu(b"1 (() )) 2").unknown == {"(()": 1, "))": 1}
+
+
+def test_a_slur_at_the_beginning_of_a_repeat_is_of_its_first_note_in_each_pass():
+    for text in ("1=F 3 R{ ( 1 2 ) 3 4 }", "1=F 3 |: 4=80 ( 1 2 ) 3 4 :|"):
+        assert [(each.begin, each.end) for each in part(text).spans] == [(1, 2), (5, 6)]
+    ending = part("R{ 1 } A{ ( 2 3 ) | ( 4 5 ) }")
+    assert [(each.begin, each.end) for each in ending.spans] == [(1, 2), (4, 5)]
+    over_the_bar = parse_jianpu(b"4/4 1 2 3 4 | ( 3 2 ) 1 1 | 1 2 3 4 ( | 5 )")
+    assert [(each.begin, each.end) for each in over_the_bar.parts[0].spans] == [(3, 5), (11, 12)]
+    (line,) = over_the_bar.warnings
+    assert line.startswith("slurs from the note before a bar line")
 
 
 def test_slurs_may_lie_within_each_other_and_those_without_an_end_are_warned_of():

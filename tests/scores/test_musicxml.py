@@ -288,13 +288,11 @@ def test_grace_notes_belong_to_the_note_after_them_or_before_them(read):
 # -- spans and directions -----------------------------------------------------------------------
 
 
-def test_slurs_glissandos_hairpins_and_trills_last_from_note_to_note(subtests, read):
-    trill = '<ornaments>{}<wavy-line type="{}"/></ornaments>'
+def test_slurs_glissandos_and_hairpins_last_from_note_to_note(subtests, read):
     first, second = note("G4", 2, slur("start")), note("A4", 2, slur("stop"))
     glides = [f'<glissando type="{kind}" number="2"/>' for kind in ("start", "stop")]
     within = wedge("crescendo") + note("G4", 1, slur("start")) + note("A4", 1)
     begun = note("G4", 1, slur("start")) + note("A4", 1, slur("start"), slur("stop"))
-    wavy = note("G4", 2, trill.format("<trill-mark/>", "start"))
     for bars, spans in [
         (
             [
@@ -309,7 +307,6 @@ def test_slurs_glissandos_hairpins_and_trills_last_from_note_to_note(subtests, r
         ([first + second + barline(repeat="backward")], [("slur", 0.0, 2.0), ("slur", 4.0, 6.0)]),
         # In words up to the next dynamic.
         ([dynamics("p") + words("cresc.") + FOUR, dynamics("f") + FOUR], [("crescendo", 0.0, 4.0)]),
-        ([wavy + note("A4", 2, trill.format("", "stop"))], [("trill", 0.0, 2.0)]),
     ]:
         with subtests.test(spans=spans):
             assert spans_of(read(score(*bars))) == spans
@@ -562,6 +559,6 @@ def test_the_example_has_every_mark_that_musicxml_can_write(read):
     marks = {mark.name for each in written.parts[0].notes for mark in each.marks}
     # Words say what is plucked, shaken or else articulated; an arpeggio is nothing for a fiddle.
     assert set(MARKS) - marks == {"pizzicato", "arpeggio", "vibrato", "articulation"}
-    assert {span.name for span in written.parts[0].spans} == set(SPANS) - {"trill", "accelerando"}
+    assert {span.name for span in written.parts[0].spans} == set(SPANS) - {"accelerando"}
     assert not written.unknown
     assert not written.warnings

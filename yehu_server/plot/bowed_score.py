@@ -12,6 +12,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.note_range import YEHU, NoteRange
@@ -27,15 +29,18 @@ from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.layout import PageBar, Piece
 from yehu_server.scores.written.mark_settings import DOWN, UP
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Span, Written
-from yehu_server.scores.written.words import words_of_sign
+from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 BARS_A_LINE, MAX_LINES = 4, 60
 LINE_INCHES, WIDTH = 1.55, 12.0
 INK, BOW, STRING, LOUD = "#1c2733", "#b5402a", "#3b6ea8", "#5a4a6f"
+SPAN_WORDS = {**WRITTEN_CHANGES, "glissando": "gliss.", "portamento": "port."}
 BOWS = {DOWN: "\N{SQUARE CAP}", UP: "\N{LOGICAL OR}"}
 MARK_SIGNS = {
     "staccato": "·", "staccatissimo": "▾", "tenuto": "\N{EN DASH}", "accent": ">", "marcato": "^",
-    "trill": "tr", "mordent": "mord.", "inverted-mordent": "mord.", "turn": "turn",
+    "trill": "tr", "mordent": "mord.", "inverted-mordent": "inv. mord.", "turn": "turn",
+    "inverted-turn": "inv. turn", "caesura": "//", "soft-accent": "<>", "stress": "stress",
+    "unstress": "unstress",
     "tremolo": "///", "fermata": "fermata", "pizzicato": "+", "snap-pizzicato": "+",
     "harmonic": "o", "vibrato": "~", "breath": ",", "slide-in-up": "↗", "slide-in-down": "↘",
     "slide-out-up": "↗", "slide-out-down": "↘", "spiccato": "▾", "portato": "\N{EN DASH}·",
@@ -128,10 +133,16 @@ class _Page:
         """Draw a line of bars."""
         axes.set_axis_off()
         axes.set(xlim=(-0.02, BARS_A_LINE + 0.02), ylim=(-2.6, 3.4))
-        places: dict[Fraction, float] = {}  # of note beats, across
+        places: dict[Fraction, float] = {}  # of beats, across
         for column, at in enumerate(row):
             self._bar(axes, column, at, places)
-        self._joined(axes, row, places)
+        begin, end = self._bars[row[0]].begin, self._bars[row[-1]].end
+        places[end] = float(len(row))
+        self._braces(axes, begin, end, places)
+        self._words(axes, begin, end, places)
+        for span in self._part.spans:
+            if span.name in HAIRPINS and span.begin < end and span.end > begin:
+                self._hairpin(axes, span, places)
 
     def _bar(self, axes: Any, column: int, at: int, places: dict[Fraction, float]) -> None:
         bar = self._bars[at]
@@ -142,8 +153,7 @@ class _Page:
         x = column + 0.06
         for cut in cuts:
             step = 0.9 * _width(cut) / width
-            if cut.is_first and cut.note is not None:
-                places[cut.note.beat] = x
+            places[cut.begin] = x
             self._figure(axes, x, step, cut)
             x += step
 
@@ -192,19 +202,35 @@ class _Page:
         labels.append(own if own != before else "")
         text = " ".join(filter(None, labels))
         axes.text(x, -1.2, text, fontsize=7, color=STRING, ha="center", va="center")
-        axes.text(x, -2.55, note_name(note.pitch), fontsize=5.5, color="0.6", ha="center")
+        name = layout.name_of(note.pitch, self._written.fifths_at(note.beat))
+        axes.text(x, -2.55, name, fontsize=5.5, color="0.6", ha="center")
 
-    def _joined(self, axes: Any, row: range, places: dict[Fraction, float]) -> None:
-        """Join the notes of strokes, and write dynamics and hairpins under the line."""
-        last = self._bars[row[-1]].end
+    def _braces(
+        self, axes: Any, begin: Fraction, end: Fraction, places: dict[Fraction, float]
+    ) -> None:
+        """Join the notes of strokes; a brace that goes on in the next line is open."""
         for stroke in self._strokes:
-            beats = self._begins[stroke.first : stroke.last + 1]
-            xs = [places[beat] for beat in beats if beat in places]
-            if len(xs) > 1:
-                axes.plot([xs[0], xs[0], xs[-1], xs[-1]], [1.5, 1.65, 1.65, 1.5], color=BOW, lw=1)
+            first, last = self._begins[stroke.first], self._begins[stroke.last]
+            if first == last or last < begin or first >= end:
+                continue
+            xs, ys = [_at(places, first)] * 2, [1.5, 1.65]
+            if first < begin:
+                xs, ys = [-0.02], [1.65]
+            xs, ys = [*xs, _at(places, last)], [*ys, 1.65]
+            if last < end:
+                xs, ys = [*xs, xs[-1]], [*ys, 1.5]
+            axes.plot(xs, ys, color=BOW, lw=1)
+
+    def _words(
+        self, axes: Any, begin: Fraction, end: Fraction, places: dict[Fraction, float]
+    ) -> None:
+        """Write dynamics, other signs, slides and changes of tempo under the line."""
         words: dict[Fraction, list[str]] = {}
+        for span in self._part.spans:
+            if span.name in SPAN_WORDS and begin <= span.begin < end:
+                words.setdefault(span.begin, []).append(SPAN_WORDS[span.name])
         for sign in self._part.signs:
-            if self._bars[row.start].begin <= sign.beat < last:
+            if begin <= sign.beat < end:
                 is_loud = sign.name in DYNAMICS or sign.name in FORCED
                 text = words_of_sign(sign.name, sign.value) or sign.name
                 words.setdefault(sign.beat, []).append(text)
@@ -213,18 +239,11 @@ class _Page:
         for beat, texts in words.items():
             x, text = _at(places, beat) - 0.02, ", ".join(texts)
             axes.text(x, -1.85, text, fontsize=8, color=LOUD, style="italic", va="center")
-        for span in self._part.spans:
-            if span.name in HAIRPINS:
-                self._hairpin(axes, span, self._bars[row.start].begin, last, places)
 
-    def _hairpin(
-        self, axes: Any, span: Span, begin: Fraction, end: Fraction, places: dict[Fraction, float]
-    ) -> None:
-        if span.end <= begin or span.begin >= end or not places:
-            return
-        left = _at(places, max(span.begin, begin))
-        right = max(places.values()) if span.end >= end else _at(places, span.end)
-        left, right = left + 0.08, right - 0.04  # beside the dynamics there
+    def _hairpin(self, axes: Any, span: Span, places: dict[Fraction, float]) -> None:
+        left, right = _at(places, span.begin), _at(places, span.end)
+        room = right - left
+        left, right = left + min(0.08, 0.4 * room), right - min(0.04, 0.2 * room)  # for dynamics
         narrow, wide = (left, right) if span.name == "crescendo" else (right, left)
         for y in (-2.0, -1.7):
             axes.plot([narrow, wide], [-1.85, y], color=LOUD, lw=0.9)
@@ -239,6 +258,6 @@ def _width(piece: Piece) -> float:
 
 
 def _at(places: dict[Fraction, float], beat: Fraction) -> float:
-    """Where a beat is across the line: at the note that begins there or before it."""
-    before = [at for at in places if at <= beat]
-    return places[max(before)] if before else min(places.values(), default=0.0)
+    """Where a beat is across the line, between those of which the places are known."""
+    beats = sorted(places)
+    return float(np.interp(float(beat), [float(at) for at in beats], [places[at] for at in beats]))

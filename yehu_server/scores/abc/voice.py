@@ -14,6 +14,7 @@ from yehu_server.scores.abc.tokens import KINDS, NOTE, NOTE_AT, TOKEN
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
+from yehu_server.scores.written.ornaments import HALF, WHOLE, Around, around_letter
 from yehu_server.scores.written.repeats import MAX_BARS, MAX_TIMES, BarLines
 from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
 from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
@@ -23,6 +24,7 @@ MIDDLE_C = 60.0
 LONGEST = 64  # quarters of a note
 MAX_BARS_REST = 1000
 ONE = Fraction(1)
+Pitched = tuple[float, Fraction, Around]
 
 
 class VoiceReader:
@@ -162,12 +164,10 @@ class VoiceReader:
 
     # -- notes -------------------------------------------------------------------------------
 
-    def _pitched(
-        self, sign: str | None, letter: str, octaves: str, length: str
-    ) -> tuple[float, Fraction]:
+    def _pitched(self, sign: str | None, letter: str, octaves: str, length: str) -> Pitched:
         name = letter.upper()
         octave = letter.islower() + octaves.count("'") - octaves.count(",")
-        reached = name if self._spread == "pitch" else (name, octave)
+        reached = self._reached(name, octave)
         if sign:
             alter = keywords.ALTERS[sign]
             if self._spread != "not":
@@ -175,12 +175,22 @@ class VoiceReader:
         elif (name, octave) in self._tied and reached not in self._in_bar:
             alter = self._tied[name, octave]
         else:
-            alter = self._in_bar.get(reached, self._alters[name])
+            alter = self._alter_of(name, octave)
         self._place = name, octave, alter
+        around = (WHOLE, HALF)
+        if self._marks:
+            around = around_letter(name, octave, alter, self._alter_of)
         moved = self._properties
         octave += moved["clef"] + moved["octave"]
         pitch = MIDDLE_C + SEMITONES[name] + alter + 12.0 * octave + moved["transpose"]
-        return min(max(pitch, 0.0), 127.0), self._length(length)
+        return min(max(pitch, 0.0), 127.0), self._length(length), around
+
+    def _reached(self, name: str, octave: int) -> str | tuple[str, int]:
+        """What an accidental reaches in its bar."""
+        return name if self._spread == "pitch" else (name, octave)
+
+    def _alter_of(self, name: str, octave: int) -> float:
+        return self._in_bar.get(self._reached(name, octave), self._alters[name])
 
     def _length(self, text: str) -> Fraction:
         """A length in quarters."""
@@ -189,15 +199,14 @@ class VoiceReader:
             length = self._lengths[text] = _length(text) * self.unit
         return length
 
-    def _notes(
-        self, pitched: list[tuple[float, Fraction]], ties: bool, factor: Fraction = ONE
-    ) -> None:
-        length, pitch = pitched[0][1], max(pitched)[0]
+    def _notes(self, pitched: list[Pitched], ties: bool, factor: Fraction = ONE) -> None:
+        length, (pitch, _, around) = pitched[0][1], max(pitched)
         if factor is not ONE:
             length *= factor
         if len(pitched) > 1:
             self._warnings["lower notes of chords are not played"] += len(pitched) - 1
-        note = RawNote(self._at, length, pitch, ("1", "1"), self._marks, ends=self._starts)
+        marks, ends = self._marks, self._starts
+        note = RawNote(self._at, length, pitch, ("1", "1"), marks, around, ends=ends)
         self._marks, self._starts, self._tied = [], [], {}
         self._add([note], length)
         if ties:
@@ -240,7 +249,7 @@ class VoiceReader:
     def _graces(self, text: str) -> None:
         for each in self._inner(text):
             self._count_note()
-            pitch, _ = self._pitched(*each.groups()[:4])
+            pitch, *_ = self._pitched(*each.groups()[:4])
             small = RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
             self._bar.notes.append(small)
 

@@ -9,6 +9,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.jianpu.text import Word, failure
 from yehu_server.scores.written.notated import Grace
+from yehu_server.scores.written.ornaments import HALF, WHOLE, Around
 from yehu_server.scores.written.words import Meaning
 
 UNFIT = "bar lines do not fit the metre"
@@ -79,6 +80,8 @@ class Element:
     pitch: float | None = None  # MIDI note; None for a rest or dash
     other: float | None = None  # the other note of a tremolo between two
     living: str = ""  # the character, of a living note of 二四谱
+    fifths: int | None = None  # of the key, where one is written
+    around: Around = (WHOLE, HALF)
     before: tuple[Grace, ...] = ()
     after: tuple[Grace, ...] = ()
     actions: list[Meaning] = field(default_factory=list)  # what the words after it do, in order
@@ -123,6 +126,12 @@ class RepeatStack:
     def add(self, element: object) -> None:
         """Add an element to the innermost open repeat."""
         self._stack[-1].elements.append(element)
+
+    @property
+    def is_beginning(self) -> bool:
+        """Whether a repeat, or an ending, has no note yet."""
+        begun = any(isinstance(each, Element | Repeat) for each in self._stack[-1].elements)
+        return len(self._stack) > 1 and not begun
 
     def open_repeat(self, times: str, word: Word, *, signs: bool = False) -> None:
         """Begin a repeat. Raises ScoreError beyond its bounds."""

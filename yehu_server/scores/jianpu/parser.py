@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Callable
 from fractions import Fraction
+from operator import itemgetter
 
 from yehu_server.scores.jianpu.form import (
     JUMPS,
@@ -13,7 +14,7 @@ from yehu_server.scores.jianpu.form import (
     MetreMark,
     RepeatStack,
 )
-from yehu_server.scores.jianpu.mark_words import AHEAD, IGNORED, action_of
+from yehu_server.scores.jianpu.mark_words import AHEAD, IGNORED, SLURS_AND_TIES, action_of
 from yehu_server.scores.jianpu.note_words import (
     Figure,
     Kind,
@@ -27,6 +28,7 @@ from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Word, failure
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO, Grace
+from yehu_server.scores.written.ornaments import WAYS
 from yehu_server.scores.written.words import Meaning
 
 MAX_TUPLET, MAX_BARS_REST = 64, 1000
@@ -40,7 +42,8 @@ _LETTER = re.compile(r"letter[A-Z0-9]+")
 _BAR_SIGNS = re.compile(  # ‖ is a double one
     r"(:+[|\u2016]+:+|::|[|\u2016\[]*[|\u2016]:+|:+[|\u2016]+\]?|[|\u2016]+\]|\[[|\u2016]+|[|\u2016]+)"
 )
-_ATTACHED = re.compile(r"(\(*)([^()~|]+)([()~]*)")
+_ATTACHED = re.compile(r"[()~]|[^()~]+")
+SLUR_AT_BAR = "slurs from the note before a bar line (a slur from the next note is written (1 2))"
 Counts = Counter[str]
 
 
@@ -69,6 +72,8 @@ class PartParser:
         self._ahead: list[Meaning] = []
         self._graces: tuple[Grace, ...] = ()
         self._last: Element | None = None
+        self._figure: Figure | None = None  # of the last note
+        self._is_after_bar = False
         self._count = 0
         self._skips = False  # the argument of \bar
         self._ways: tuple[Callable[[Word], bool], ...] = (
@@ -128,7 +133,7 @@ class PartParser:
             self._add(Element(Kind.DASH, length), word)
 
     def _add_note(self, note: NoteWord, figures: tuple[Figure, ...], word: Word) -> None:
-        element = Element(note.kind, self._length(note))
+        element = Element(note.kind, self._length(note), fifths=self.scale.fifths)
         if note.kind is Kind.BEAT:
             self.notices["beats of percussion (x), played as rests"] += 1
         if figures:
@@ -148,7 +153,7 @@ class PartParser:
     ) -> None:
         single = len(figures) == 1
         pitches = [self.scale.pitch(figure, word, shifted=single) for figure in figures]
-        element.pitch = max(pitches)
+        element.pitch, self._figure = max(zip(pitches, figures, strict=True), key=itemgetter(0))
         if tremolo and len(figures) == 2:
             element.pitch, element.other = pitches
         elif tremolo:
@@ -172,7 +177,7 @@ class PartParser:
         if self._count > MAX_UNFOLDED:
             raise failure(word, f"more than {MAX_UNFOLDED} notes")
         self._braces.add(element)
-        self._last = element
+        self._last, self._is_after_bar = element, False
         self._bars.step(element.length, word)
 
     def _as_graces(self, word: Word) -> bool:
@@ -202,19 +207,26 @@ class PartParser:
         if self._last is None:  # before the first note: a moment without length
             self._last = Element(Kind.REST, Fraction(0))
             self._braces.add(self._last)
+        if action.kind == "slur" and self._braces.is_beginning:  # which has no note before it
+            self._ahead.append(action)
+            return True
+        if action.kind == "slur" and self._is_after_bar:
+            self.notices[SLUR_AT_BAR] += 1
+        if action.name in WAYS and self._figure is not None:
+            self._last.around = self.scale.around(self._figure)
         self._last.actions.append(action)
         return True
 
     def _as_attached(self, word: Word) -> bool:
-        """A note with brackets, ties or bar lines written onto it."""
-        found = _ATTACHED.fullmatch(word.text)
+        """Notes with brackets, ties or bar lines written onto them."""
+        found = _ATTACHED.findall(word.text)
+        signs = {*found} & {*SLURS_AND_TIES}
         has_bar = not {"|", "\u2016"}.isdisjoint(word.text) or word.text == "::"
         if has_bar and '"' not in word.text and not _BAR_SIGNS.fullmatch(word.text):
             pieces = [piece for piece in _BAR_SIGNS.split(word.text) if piece]
-        elif found is not None and (found[1] or found[3]):
-            if note_word(found[2], self._octaves) is None:
-                return False
-            pieces = [found[2], *found[1], *found[3]]
+        elif signs and signs != {*found} and all(map(self._may_join, found)):
+            first = next(at for at, each in enumerate(found) if each != "(")
+            pieces = [found[first], *found[:first], *found[first + 1 :]]
         else:
             return False
         column = word.column
@@ -222,6 +234,9 @@ class PartParser:
             self.read(Word(piece, word.line, column))
             column += len(piece)
         return True
+
+    def _may_join(self, piece: str) -> bool:
+        return piece in SLURS_AND_TIES or note_word(piece, self._octaves) is not None
 
     def _as_switch(self, word: Word) -> bool:
         text = word.text
@@ -293,6 +308,7 @@ class PartParser:
         return True
 
     def _bar_line(self, text: str, word: Word) -> None:
+        self._is_after_bar = True
         if text.startswith(":"):
             self._braces.end_by_sign()
         if text == "|" or ":" not in text:

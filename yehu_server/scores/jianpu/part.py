@@ -9,9 +9,10 @@ from yehu_server.scores.jianpu.characters import Contour, living
 from yehu_server.scores.jianpu.form import Element, MetreMark
 from yehu_server.scores.jianpu.mark_words import THERE_AND_BACK
 from yehu_server.scores.jianpu.note_words import Kind
-from yehu_server.scores.score import Metre
+from yehu_server.scores.score import KeySignature, Metre
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Mark, Note, OpenSpan, Sign, Span, Tempo
+from yehu_server.scores.written.ornaments import filled
 from yehu_server.scores.written.words import Meaning
 
 TREMOLO_NOTE = Fraction(1, 8)  # of a tremolo between two notes: a demisemiquaver
@@ -25,12 +26,15 @@ class _Draft:
     note: Note
     element: Element
     returns: bool = False  # slides away and back
+    late: Fraction = Fraction(0)  # where what it is tied to begins, from its beginning
 
     def grow(self, more: Element, marks: Iterable[Mark]) -> None:
         """Let it go on with another element."""
         note = self.note
-        length, marks, after = note.length + more.length, (*note.marks, *marks), note.after
-        self.note = replace(note, length=length, marks=marks, after=(*after, *more.after))
+        if more.kind is Kind.NOTE:
+            self.late = note.length
+        grown = note.longer(more.length, marks, self.late)
+        self.note = replace(grown, after=(*note.after, *more.after))
 
 
 class PartBuilder:
@@ -47,8 +51,10 @@ class PartBuilder:
         self.signs: list[Sign] = []
         self.tempi: list[Tempo] = []
         self.metres: list[Metre] = []
+        self.keys: list[KeySignature] = []
         self._notices = notices
         self._drafts: list[_Draft] = []
+        self._fifths: int | None = None
         self._tied = False
         self._slurs: list[Fraction] = []
         self._hairpin = OpenSpan(self.spans)
@@ -78,6 +84,9 @@ class PartBuilder:
     def _sound(self, element: Element) -> None:
         begin = self.end
         self.end = begin + element.length
+        if element.fifths is not None and element.fifths != self._fifths:
+            self._fifths = element.fifths
+            self.keys.append(KeySignature(begin, element.fifths))
         last = self._drafts[-1] if self._drafts else None
         goes_on = last is not None and last.note.end == begin
         if element.kind is Kind.NOTE and element.pitch is not None:
@@ -101,7 +110,7 @@ class PartBuilder:
     def _note(self, element: Element, pitch: float, begin: Fraction, last: _Draft | None) -> None:
         marks = _marks(element)
         if self._tied and last is not None and last.note.pitch == pitch and not element.before:
-            last.grow(element, [mark for mark in marks if mark not in last.note.marks])
+            last.grow(element, marks)
             self._tied = False
             return
         self._untied()
@@ -188,4 +197,5 @@ class PartBuilder:
 
 
 def _marks(element: Element) -> list[Mark]:
-    return [Mark(each.name, each.value) for each in element.actions if each.kind == "mark"]
+    marks = (Mark(each.name, each.value) for each in element.actions if each.kind == "mark")
+    return [filled(mark, element.around) for mark in marks]

@@ -17,10 +17,8 @@ from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Header, Word, decoded, words_of
 from yehu_server.scores.score import (
     COMMON_TIME,
-    KeySignature,
     Metre,
     errors_name,
-    nearest_key,
     printable,
     read_score_bytes,
 )
@@ -87,7 +85,6 @@ class _Reader:
         self._names: dict[int, str] = {}
         self._parts: dict[int, list[PartBuilder]] = {}
         self._end = Fraction(0)
-        self._key: float | None = None
 
     def read(self, movement: Sequence[Words]) -> None:
         """Read the parts of a movement, which begins where the one before ended."""
@@ -104,8 +101,6 @@ class _Reader:
             if number and key and not scale.has_own:
                 self._notices["a part without a key is in that of the one before, not in C"] += 1
             key, metre = scale.first_key, parser.metre or metre
-            if number == 0 and self._key is None:
-                self._key = key
             order, warnings = unfolded(parser.end())
             self._notices.update(warnings)
             played.append(PartBuilder(self._end, self._notices))
@@ -144,11 +139,9 @@ class _Reader:
         if not any(part.notes for part in parts):
             raise ScoreError("has no notes of jianpu")
         metres = self._metres()
-        whole = Written(tuple(parts), self._tempi(), metres, self._bars(metres), self._title)
-        if self._key is None:
-            return whole
-        fifths = nearest_key(7 * round(self._key))
-        return replace(whole, keys=(KeySignature(Fraction(0), fifths),))
+        keys = tuple(key for each in self._parts[0] for key in each.keys)
+        bars = self._bars(metres)
+        return Written(tuple(parts), self._tempi(), metres, bars, self._title, keys=keys)
 
     def _tempi(self) -> tuple[Tempo, ...]:
         """The tempi of all parts; where several change it at once, that of the first."""

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from yehu_server.scores.jianpu.characters import DEFAULT_MODE, ERSIPU, is_living, semitones_of
 from yehu_server.scores.jianpu.note_words import MAJOR, MAX_OCTAVES, Figure
 from yehu_server.scores.jianpu.text import Word, failure
-from yehu_server.scores.score import printable
+from yehu_server.scores.score import nearest_key, printable
 from yehu_server.scores.written.layout import SEMITONES
+from yehu_server.scores.written.ornaments import Around, around
 
 MIDDLE_C = 60.0
 LOWEST_DO = -5.0  # semitones from middle C, without the sharp or flat of the key
@@ -53,19 +54,36 @@ class Scale:
         key = MIDDLE_C if figure.sign.isascii() else DEFAULT_CHARACTER_KEY
         if self._key is not None:
             key = MIDDLE_C + self._key
-        if figure.sign.isascii():
-            semitones = MAJOR[int(figure.sign) - 1]
-        elif self._is_ersipu(figure):
-            semitones = semitones_of(figure.sign, figure.weight, self.mode)
-        elif figure.sign in self.characters:
-            semitones = self.characters[figure.sign]
-        else:
+        if not figure.sign.isascii() and figure.sign not in self.characters:
             raise failure(word, f"there is no {figure.sign} in this notation")
         octaves = figure.octave + (self._octave if shifted else 0)
-        found = key + semitones + figure.alter + 12.0 * octaves
+        found = key + self._above_do(figure) + figure.alter + 12.0 * octaves
         if not 0.0 <= found <= 127.0:
             raise failure(word, f"{printable(word.text)} is beyond any instrument")
         return found
+
+    def _above_do(self, figure: Figure) -> float:
+        """Semitones of a figure without its accidental and octave."""
+        if figure.sign.isascii():
+            return MAJOR[int(figure.sign) - 1]
+        if self._is_ersipu(figure):
+            return semitones_of(figure.sign, figure.weight, self.mode)
+        return self.characters[figure.sign]
+
+    def around(self, figure: Figure) -> Around:
+        """The intervals from a figure to its neighbours in the scale."""
+        signs = "1234567" if figure.sign.isascii() else self.characters
+        plain = {sign: self._above_do(Figure(sign)) for sign in signs}
+        degrees = sorted({semitones % 12.0 for semitones in plain.values()})
+        count, base = len(degrees), plain[figure.sign]
+        at = degrees.index(base % 12.0)
+        own = degrees[at] + self._above_do(figure) - base + figure.alter
+        return around(at, own, lambda to: degrees[to % count] + 12.0 * (to // count))
+
+    @property
+    def fifths(self) -> int | None:
+        """The sharps of the key, below 0 flats; None where none is written."""
+        return None if self._key is None else nearest_key(7 * round(self._key))
 
     def living(self, figure: Figure) -> str:
         """The character of a living note of 二四谱; empty for others."""

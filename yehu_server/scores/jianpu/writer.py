@@ -10,19 +10,12 @@ from yehu_server.scores.jianpu.mark_words import COMMANDS, FINGERING
 from yehu_server.scores.score import DO_BY_FIFTHS, nearest_key
 from yehu_server.scores.written import layout, notated
 from yehu_server.scores.written.layout import PageBar, Piece
-from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Span, Tempo, Written
+from yehu_server.scores.written.notated import Grace, Mark, Part, Span, Tempo, Written
+from yehu_server.scores.written.ornaments import filled
 from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 BARS_A_LINE = 4
 GRACES = {Fraction(1, 2): "q", Fraction(1, 4): "s", Fraction(1, 8): "d", Fraction(1, 16): "h"}
-# The values (semitones) of these words, where none is written.
-DEFAULTS = {
-    "trill": 2.0,
-    "mordent": 1.0,
-    "inverted-mordent": 2.0,
-    "turn": 2.0,
-    "inverted-turn": 2.0,
-}
 HAIRPINS = {"crescendo": "\\<", "diminuendo": "\\>"}
 TEMPO_UNITS = (("4", Fraction(1)), ("8", Fraction(1, 2)), ("4.", Fraction(3, 2)),
                ("16", Fraction(1, 4)), ("2", Fraction(2)))  # fmt: skip
@@ -214,8 +207,9 @@ class _PartWriter:
         figure = "0" if note is None else self._figure(note.pitch)
         is_tremolo = note is not None and piece.is_first and bool(note.marked("tremolo"))
         yield f"{beam}{figure}{dots}{'///' if is_tremolo else ''}"
-        if note is not None and piece.is_first:
-            yield from self._marks(note)
+        if note is not None:
+            self._lost["pitches that move within a note"] += piece.is_first and bool(note.contour)
+            yield from self._marks(note.pitch, note.marks_at(piece.begin))
         end = piece.begin + min(piece.length, factor)
         yield from self._take_after(piece.end if length < 2 else end)
         for _ in range(int(length) - 1 if length >= 2 else 0):
@@ -244,14 +238,13 @@ class _PartWriter:
 
     # -- notes -------------------------------------------------------------------------------
 
-    def _marks(self, note: Note) -> Iterator[str]:
-        if note.contour:
-            self._lost["pitches that move within a note"] += 1
-        for mark in note.marks:
+    def _marks(self, pitch: float, marks: Sequence[Mark]) -> Iterator[str]:
+        for mark in marks:
             word = MARK_WORDS.get(mark)
-            if word is None and mark.value is not None:  # without it is nearly the same
+            if word is None and mark.value is not None:  # nearly the same
                 word = MARK_WORDS.get(Mark(mark.name))
-                self._lost[f"{mark.name} {mark.value:g}"] += mark.value != DEFAULTS.get(mark.name)
+                read = filled(Mark(mark.name), figures.around_figure(pitch, self._fifths))
+                self._lost[f"{mark.name} {mark.value:g}"] += mark != read
             if mark.name == "tremolo" and word is None:  # three strokes are written at the figure
                 self._lost[f"tremolo {mark.value or 0:g}"] += mark.value != 3.0
                 continue

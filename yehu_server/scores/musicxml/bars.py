@@ -8,11 +8,11 @@ from xml.etree.ElementTree import Element
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
 from yehu_server.scores.musicxml.elements import tell
-from yehu_server.scores.musicxml.marks import VALUES, NoteMarks, neighbour, number
+from yehu_server.scores.musicxml.marks import VALUES, Alters, NoteMarks, around_in, number
 from yehu_server.scores.musicxml.repeat_signs import RepeatSigns
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import SEMITONES
-from yehu_server.scores.written.notated import MAX_BEATS, MAX_NOTES
+from yehu_server.scores.written.notated import MAX_BEATS, MAX_NOTES, Mark
 from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
 from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
 from yehu_server.scores.written.voices import FINEST, RawBar, RawDirection, RawNote
@@ -44,6 +44,8 @@ class BarReader:
         self._graces: list[RawNote] = []  # grace notes before their note
         # Voices and pitches of lower notes of chords, which are not played, that are tied on.
         self._dropped: set[tuple[tuple[str, str], float]] = set()
+        self._alters: dict[tuple[str, str], Alters] = {}  # of this bar, by staves and voices
+        self._wavy: set[tuple[str, str]] = set()  # voices in which a trill goes on
         self._at = Fraction(0)
         self._bar = RawBar("", BarLines())
         self._signs = RepeatSigns()
@@ -61,6 +63,7 @@ class BarReader:
         self._at = Fraction(0)
         self._head = None
         self._graces = []
+        self._alters = {}
         self._swings = [(Fraction(0), self._swing)]
         directions = DirectionReader(bar.directions, lines.jumps, self._unknown)
         for child in measure:
@@ -238,11 +241,12 @@ class BarReader:
         elif length == 0:
             self._warnings["notes without a duration are left out"] += 1
             return
+        self._ties(element, note)
+        self._marks(element, note)
         self._spans(element, note)
         if self._dropped and "stop" in note.ties and (note.voice, note.pitch) in self._dropped:
             self._dropped.discard((note.voice, note.pitch))
             self._drop(note)
-        self._marks(element, note)
         notes = self._bar.notes
         last = notes[-1] if notes else None
         place = (note.at, note.voice, note.is_grace)
@@ -264,7 +268,7 @@ class BarReader:
         dropped = RawNote(note.at, note.length, note.pitch, note.voice, ties=note.ties)
         if ("dropped" not in note.ties, note.pitch) > ("dropped" not in first.ties, first.pitch):
             dropped.pitch, dropped.ties = first.pitch, first.ties
-            first.pitch, first.ties = note.pitch, note.ties
+            first.pitch, first.ties, first.around = note.pitch, note.ties, note.around
         self._drop(dropped)
         first.marks += [mark for mark in note.marks if mark not in first.marks]
         first.ends += [end for end in note.ends if end not in first.ends]
@@ -289,14 +293,22 @@ class BarReader:
             return None
         return value
 
-    def _spans(self, element: Element, note: RawNote) -> None:
+    def _ties(self, element: Element, note: RawNote) -> None:
         for tie in (*element.iterfind("tie"), *element.iterfind("notations/tied")):
             kind = tie.get("type", "")
             note.ties |= {"start", "stop"} if kind == "continue" else {kind}
+
+    def _spans(self, element: Element, note: RawNote) -> None:
+        """Begin and end lines here; a wavy line after a trill lets the notes under it trill."""
+        if note.voice in self._wavy and not note.is_grace:
+            note.marks.append(Mark("trill"))
+        is_trill = any(mark.name == "trill" for mark in note.marks)
         for notations in element.iterfind("notations"):
             for child in notations.iter():
-                if child.tag in ("slur", "glissando", "slide", "wavy-line"):
-                    kind, which = child.get("type", ""), child.get("number", "1")[:8]
+                kind, which = child.get("type", ""), child.get("number", "1")[:8]
+                if child.tag == "wavy-line" and is_trill:
+                    (self._wavy.add if kind == "start" else self._wavy.discard)(note.voice)
+                elif child.tag in ("slur", "glissando", "slide", "wavy-line"):
                     note.ends.append((child.tag, kind, which))
                 elif child.tag == "tremolo" and child.get("type") in ("start", "stop"):
                     note.ends.append(("tremolo", child.get("type", ""), ""))
@@ -304,14 +316,15 @@ class BarReader:
     def _marks(self, element: Element, note: RawNote) -> None:
         letter = (element.findtext("pitch/step") or "C").strip()
         octave = int(number(element.findtext("pitch/octave"), 4.0))
-        fifths = self._fifths
-
-        def interval(way: int, alter: float | None) -> float:
-            other = neighbour(letter, octave, way, fifths, alter) + self._transposed
-            by = abs(other - note.pitch)
-            return by if 0.5 <= by <= 4.0 else 2.0
-
-        marks = NoteMarks(interval, lambda name: self._unknown.update([name]))
+        place = letter, octave, number(element.findtext("pitch/alter"))
+        alters, fifths = self._alters.setdefault(note.voice, {}), self._fifths
+        if "stop" not in note.ties:  # tied over a bar line, an accidental is of its note alone
+            alters[place[:2]] = place[2]
+        note.around = around_in(place, alters, fifths)
+        marks = NoteMarks(
+            lambda alter: around_in(place, alters, fifths, alter),
+            lambda name: self._unknown.update([name]),
+        )
         for notations in element.iterfind("notations"):
             marks.read(notations)
             for dynamics in notations.iterfind("dynamics"):

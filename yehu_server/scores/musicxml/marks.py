@@ -1,15 +1,16 @@
 """MusicXML's marks of notes, by the names of `notated`: read and written (docs/scores.md)."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from xml.etree.ElementTree import Element, SubElement
 
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.musicxml.elements import SCHEMA
 from yehu_server.scores.score import printable
-from yehu_server.scores.written.layout import LETTERS, STEPS, key_alter, spelled
-from yehu_server.scores.written.notated import Mark, Note
+from yehu_server.scores.written.layout import LETTERS, key_alter, spelled
+from yehu_server.scores.written.notated import Mark
+from yehu_server.scores.written.ornaments import WAYS, Around, around_letter
 from yehu_server.scores.written.words import ARTICULATED
 
 ACCIDENTALS: Mapping[str, float] = {
@@ -37,13 +38,12 @@ MARKS: Mapping[str, str] = {
     "up-bow": "up-bow", "down-bow": "down-bow", "open-string": "open-string", "open": "open-string",
     "snap-pizzicato": "snap-pizzicato", "pluck": "pizzicato",
 }  # fmt: skip
-# Those of which the value is an interval of the key: +1 above, -1 below.
-ORNAMENTS: Mapping[str, tuple[str, int]] = {
-    "trill-mark": ("trill", 1), "shake": ("trill", 1), "mordent": ("mordent", -1),
-    "inverted-mordent": ("inverted-mordent", 1), "turn": ("turn", 1), "delayed-turn": ("turn", 1),
-    "vertical-turn": ("turn", 1), "inverted-turn": ("inverted-turn", 1),
-    "delayed-inverted-turn": ("inverted-turn", 1), "inverted-vertical-turn": ("inverted-turn", 1),
-    "haydn": ("turn", 1),
+ORNAMENTS: Mapping[str, str] = {
+    "trill-mark": "trill", "shake": "trill", "mordent": "mordent",
+    "inverted-mordent": "inverted-mordent", "turn": "turn", "delayed-turn": "turn",
+    "vertical-turn": "turn", "inverted-turn": "inverted-turn",
+    "delayed-inverted-turn": "inverted-turn", "inverted-vertical-turn": "inverted-turn",
+    "haydn": "turn",
 }  # fmt: skip
 # These say nothing about the sound, or are read elsewhere.
 IGNORED = {
@@ -54,7 +54,7 @@ STRINGS = {1.0: "outer-string", 2.0: "inner-string"}  # counted from the highest
 Count = Callable[[str], None]
 # Elements by marks: the first of those that are read alike.
 ELEMENTS = {mark: element for element, mark in reversed([*MARKS.items()])}
-ORNAMENT_OF = {mark: (element, way) for element, (mark, way) in reversed([*ORNAMENTS.items()])}
+ORNAMENT_OF = {mark: element for element, mark in reversed([*ORNAMENTS.items()])}
 SIGNS = {alter: name for name, alter in reversed([*ACCIDENTALS.items()])}
 
 
@@ -72,25 +72,33 @@ def number(text: str | None, default: float = 0.0) -> float:
     return value if abs(value) < 1e9 else default
 
 
-def neighbour(letter: str, octave: int, steps: int, fifths: int, alter: float | None) -> float:
-    """The pitch (MIDI note) of the next or last note of the scale of a key.
+Alters = dict[tuple[str, int], float]  # the accidentals of a bar, by letters and octaves
 
-    `alter` is its accidental (semitones), where one is written over the ornament.
+
+def around_in(
+    place: tuple[str, int, float], alters: Alters, fifths: int, alter: float | None = None
+) -> Around:
+    """The intervals from a note, its letter, octave and accidental, to its neighbours in a bar.
+
+    `alter` is the accidental of both, where one is written over the ornament.
     """
-    octaves, at = divmod(LETTERS.index(letter) + steps, 7)
-    alter = key_alter(at, fifths) if alter is None else alter
-    return 12.0 * (octave + octaves + 1) + STEPS[at] + alter
+
+    def alter_of(letter: str, octave: int) -> float:
+        own = alters.get((letter, octave)) if alter is None else alter
+        return key_alter(LETTERS.index(letter), fifths) if own is None else own
+
+    return around_letter(*place, alter_of)
 
 
 class NoteMarks:
     """Reads the <notations> of one note.
 
-    `interval` returns the semitones from the note to its neighbour above (1) or below (-1) in the
-    key, with an accidental of its own or None; `count` is called with each unknown mark.
+    `intervals` are those to its neighbours, where they have an accidental of the ornament; `count`
+    is called with each unknown mark.
     """
 
-    def __init__(self, interval: Callable[[int, float | None], float], count: Count) -> None:
-        self._interval = interval
+    def __init__(self, intervals: Callable[[float], Around], count: Count) -> None:
+        self._intervals = intervals
         self._count = count
         self.marks: list[Mark] = []
 
@@ -103,8 +111,7 @@ class NoteMarks:
             elif tag in MARKS:
                 self._add(MARKS[tag])
             elif tag in ORNAMENTS:
-                name, way = ORNAMENTS[tag]
-                self._add(name, self._interval(way, _accidental(parent, way)))
+                self._ornament(ORNAMENTS[tag], parent)
             elif tag == "tremolo":
                 self._tremolo(child)
             elif tag.startswith("other-") and (text := plain(child.text)) in ARTICULATED:
@@ -122,6 +129,17 @@ class NoteMarks:
     def _add(self, name: str, value: float | None = None) -> None:
         self.marks.append(Mark(name, value))
 
+    def _ornament(self, name: str, ornaments: Element) -> None:
+        """An ornament; the accidentals written over it, and under it, go over those of the bar."""
+        ways = WAYS[name]
+        said: list[float | None] = [None] * len(ways)
+        for mark in ornaments.iterfind("accidental-mark"):
+            alter = ACCIDENTALS.get((mark.text or "").strip())
+            if alter is not None:
+                at = len(ways) - 1 if mark.get("placement") == "below" else 0
+                said[at] = self._intervals(alter)[ways[at] < 0]
+        self.marks.append(Mark(name, *said))
+
     def _tremolo(self, tremolo: Element) -> None:
         kind = tremolo.get("type", "single")
         if kind == "single":
@@ -138,29 +156,22 @@ class NoteMarks:
         # Of a harmonic with three notes, the sounding one says it; the others are not played.
 
 
-def _accidental(ornaments: Element, way: int) -> float | None:
-    """The accidental (semitones) above or below ornaments, where one is written."""
-    found = None
-    for mark in ornaments.iterfind("accidental-mark"):
-        if mark.get("placement", "above") == ("above" if way > 0 else "below"):
-            found = ACCIDENTALS.get((mark.text or "").strip())
-    return found
-
-
 class MarkWriter:
-    """Writes marks into <notations>; counts in `lost` those that MusicXML cannot say."""
+    """Writes marks into <notations>; counts in `lost` those that MusicXML cannot say.
+
+    `alters` are the accidentals that hold in the bar so far.
+    """
 
     def __init__(self, lost: Counter[str]) -> None:
         self._lost = lost
+        self.alters: Alters = {}
 
-    def write(self, notations: Element, note: Note, fifths: int) -> None:
-        """Write all marks of a note, in a key of so many sharps."""
-        if note.contour:
-            self._lost["pitches that move within a note"] += 1
-        for mark in note.marks:
+    def write(self, notations: Element, pitch: float, marks: Iterable[Mark], fifths: int) -> None:
+        """Write marks of a note of a pitch, in a key of so many sharps."""
+        for mark in marks:
             name, value = mark.name, mark.value
             if name in ORNAMENT_OF:
-                self._ornament(notations, note, mark, fifths)
+                self._ornament(notations, pitch, mark, fifths)
             elif name == "tremolo":
                 words = {"type": "unmeasured" if value is None else "single"}
                 element = SubElement(SubElement(notations, "ornaments"), "tremolo", words)
@@ -196,21 +207,24 @@ class MarkWriter:
         if text:
             element.text = text
 
-    def _ornament(self, notations: Element, note: Note, mark: Mark, fifths: int) -> None:
+    def _ornament(self, notations: Element, pitch: float, mark: Mark, fifths: int) -> None:
         """An ornament, with the accidental that its other note needs."""
-        element, way = ORNAMENT_OF[mark.name]
-        letter, _, octave = spelled(note.pitch, fifths)
-        name = LETTERS[letter]
+        letter, alter, octave = spelled(pitch, fifths)
+        place = LETTERS[letter], octave, alter
         group = SubElement(notations, "ornaments")
-        SubElement(group, element)
-        if mark.value is None:
-            return
-        other = note.pitch + way * mark.value
-        if abs(abs(neighbour(name, octave, way, fifths, None) - note.pitch) - mark.value) < 1e-6:
-            return
-        needed = other - neighbour(name, octave, way, fifths, 0.0)
-        if needed in SIGNS:
-            place = "above" if way > 0 else "below"
-            SubElement(group, "accidental-mark", placement=place).text = SIGNS[needed]
-        else:
-            self._lost[f"{mark.name} of {mark.value:g} semitones"] += 1
+        SubElement(group, ORNAMENT_OF[mark.name])
+        plain = around_in(place, self.alters, fifths)
+        for way, value in zip(WAYS[mark.name], (mark.value, mark.second), strict=False):
+            if value is None or abs(plain[way < 0] - value) < 1e-6:
+                continue
+            fits = [
+                own
+                for own in SIGNS
+                if abs(around_in(place, {}, fifths, own)[way < 0] - value) < 1e-6
+            ]
+            if fits:
+                own = min(fits, key=lambda own: (abs(own), -way * own))
+                where = "above" if way > 0 else "below"
+                SubElement(group, "accidental-mark", placement=where).text = SIGNS[own]
+            else:
+                self._lost[f"{mark.name} of {value:g} semitones"] += 1

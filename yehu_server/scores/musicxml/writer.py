@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from yehu_server.scores.musicxml.marks import VALUES, MarkWriter
 from yehu_server.scores.written import layout, notated
 from yehu_server.scores.written.layout import PageBar, Piece, Placed
-from yehu_server.scores.written.notated import Grace, Note, Part, Span, Tempo, Written
+from yehu_server.scores.written.notated import Grace, Part, Span, Tempo, Written
 from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 HEAD = (
@@ -26,7 +26,7 @@ SIGNED = sorted(
      for factor, dots in DOTTED.items()), reverse=True,
 )  # fmt: skip
 SIGNS_OF = dict(SIGNED)
-LINES = {"slur": "slur", "glissando": "glissando", "portamento": "slide", "trill": "wavy-line"}
+LINES = {"slur": "slur", "glissando": "glissando", "portamento": "slide"}
 MAX_LINES = 16  # of a kind, open at once
 
 
@@ -113,6 +113,7 @@ class _PartWriter:
             bar = self._bars[number]
             measure = SubElement(element, "measure", number=bar.number)
             self._attributes(measure, bar, is_first=number == 0)
+            self._marks.alters = {}
             is_last = number == len(self._bars) - 1
             for whole in pieces:
                 factor = whole.factor
@@ -173,7 +174,7 @@ class _PartWriter:
         if note is None:
             SubElement(element, "rest")
         else:
-            self._pitch(element, note.pitch)
+            self._pitch(element, note.pitch, is_struck=piece.is_first)
         SubElement(element, "duration").text = str(round(piece.length * self._divisions))
         ties = (
             []
@@ -193,8 +194,8 @@ class _PartWriter:
             SubElement(notations, "tied", type=kind)
         if note is not None:
             self._note_lines(notations, piece)
-            if piece.is_first:
-                self._marks.write(notations, note, self._fifths)
+            self._lost["pitches that move within a note"] += piece.is_first and bool(note.contour)
+            self._marks.write(notations, note.pitch, note.marks_at(piece.begin), self._fifths)
         elif piece.begin in self._fermatas:
             SubElement(notations, "fermata")
         if len(notations):
@@ -212,9 +213,7 @@ class _PartWriter:
             if number is None:
                 self._lost[span.name] += not is_end
                 continue
-            is_wavy = kind == "wavy-line"
-            parent = SubElement(notations, "ornaments") if is_wavy else notations
-            SubElement(parent, kind, {"type": "stop" if is_end else "start", "number": number})
+            SubElement(notations, kind, {"type": "stop" if is_end else "start", "number": number})
 
     def _line(self, kind: str, span: Span, *, is_end: bool) -> str | None:
         """Begin or end a line; return the number that it has among those open, if there is room."""
@@ -235,11 +234,12 @@ class _PartWriter:
         self._value(element, grace.length)
         if grace.marks:
             notations = SubElement(element, "notations")
-            small = Note(Fraction(0), Fraction(1), grace.pitch, grace.marks)
-            self._marks.write(notations, small, self._fifths)
+            self._marks.write(notations, grace.pitch, grace.marks, self._fifths)
 
-    def _pitch(self, element: Element, pitch: float) -> None:
+    def _pitch(self, element: Element, pitch: float, *, is_struck: bool = True) -> None:
         letter, alter, octave = layout.spelled(pitch, self._fifths)
+        if is_struck:
+            self._marks.alters[layout.LETTERS[letter], octave] = alter
         found = SubElement(element, "pitch")
         SubElement(found, "step").text = layout.LETTERS[letter]
         if alter:

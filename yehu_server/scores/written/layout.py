@@ -126,7 +126,10 @@ def pieces_of(part: Part, bars: Sequence[PageBar]) -> list[list[Piece]]:
         after = part.notes[number + 1].beat if number + 1 < len(part.notes) else note.end
         end = min(note.end, after) if after > note.beat else note.end
         _put(found, bars, ends, Piece(at, note.beat - at))
-        _put(found, bars, ends, Piece(note.beat, end - note.beat, note))
+        held = min(note.held_from, end) if note.marks else note.beat
+        lengths = [each for each in (held - note.beat, end - held) if each]
+        for piece in split(Piece(note.beat, end - note.beat, note), lengths):
+            _put(found, bars, ends, piece)
         at = max(at, end)
     if bars:
         _put(found, bars, ends, Piece(at, bars[-1].end - at))
@@ -210,6 +213,14 @@ def spelled(pitch: float, fifths: int) -> tuple[int, float, int]:
     _, letter, alter = best
     octave = (key - alter - STEPS[letter]) // 12 - 1
     return letter, alter + round(pitch - key, 6), octave
+
+
+def name_of(pitch: float, fifths: int) -> str:
+    """The name of a pitch in a key, such as Bb4, or A4+12 (cents)."""
+    letter, alter, octave = spelled(pitch, fifths)
+    sign = math.floor(alter + 0.5)
+    cents = round(100.0 * (alter - sign))
+    return f"{LETTERS[letter]}{'#' * sign}{'b' * -sign}{octave}{f'{cents:+d}' if cents else ''}"
 
 
 def key_alter(letter: int, fifths: int) -> int:

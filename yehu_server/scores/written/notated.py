@@ -8,8 +8,8 @@ notes since the beginning, exact, with all repeats unfolded. Pitches are MIDI no
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
@@ -50,11 +50,11 @@ MARKS: Mapping[str, str] = {
     "trill": "value: semitones up to the other note",
     "mordent": "with the note below; value: semitones down",
     "inverted-mordent": "with the note above; value: semitones up",
-    "turn": "above, note, below, note; value: semitones up",
-    "inverted-turn": "below, note, above, note; value: semitones up",
+    "turn": "above, note, below, note; values: semitones up, and down",
+    "inverted-turn": "below, note, above, note; values: semitones up, and down",
     "vibrato": "value: depth in cents; 0: none",
     "harmonic": "value: pitch that the finger touches, where it is written",
-    "fermata": "value: how many times as long",
+    "fermata": "values: how many times as long; and from which of its quarters on, of a tied note",
     "breath": "a short gap after it",
     "caesura": "time stops for a moment after it",
     "slide-in-up": "begins lower and slides into its pitch",
@@ -72,7 +72,6 @@ SPANS: Mapping[str, str] = {
     "portamento": "the finger slides into the last note, late",
     "crescendo": "louder",
     "diminuendo": "softer",
-    "trill": "the trill goes on (a wavy line); value: semitones up",
     "ritardando": "value: the tempo at the end, as a share of that at the beginning",
     "accelerando": "value: the tempo at the end, as a multiple of that at the beginning",
 }
@@ -130,10 +129,11 @@ def listed(names: Sequence[str], most: int) -> str:
 
 @dataclass(frozen=True)
 class Mark:
-    """A mark on a note: a name of MARKS, and its value where it has one."""
+    """A mark on a note: a name of MARKS, and its values where it has any."""
 
     name: str
     value: float | None = None
+    second: float | None = None
 
 
 @dataclass(frozen=True)
@@ -175,6 +175,30 @@ class Note:
         moved = object.__new__(Note)
         vars(moved).update(vars(self), pitch=pitch)
         return moved
+
+    def longer(self, by: Fraction, more: Iterable[Mark], late: Fraction) -> Note:
+        """The same note, held on with more marks; a fermata of them begins `late` in it."""
+        marks = [
+            replace(mark, second=float(late) or None) if mark.name == "fermata" else mark
+            for mark in more
+            if self.marked(mark.name) is None
+        ]
+        return replace(self, length=self.length + by, marks=(*self.marks, *marks))
+
+    @property
+    def held_from(self) -> Fraction:
+        """The beat from which a fermata holds it, if it has one."""
+        mark = self.marked("fermata")
+        late = mark.second if mark is not None else None
+        return self.beat + Fraction(late or 0).limit_denominator(5040)
+
+    def marks_at(self, beat: Fraction) -> list[Mark]:
+        """The marks to be written where it begins, or at what it is tied to."""
+        return [
+            replace(mark, second=None) if mark.name == "fermata" else mark
+            for mark in self.marks
+            if beat == (self.held_from if mark.name == "fermata" else self.beat)
+        ]
 
     def marked(self, name: str) -> Mark | None:
         """The mark of a name, if it has one."""
@@ -296,6 +320,11 @@ class Written:
     def end(self) -> Fraction:
         """The beat at which the last note ends."""
         return max((note.end for part in self.parts for note in part.notes), default=Fraction(0))
+
+    def fifths_at(self, beat: Fraction) -> int:
+        """The sharps of the key at a beat, below 0 flats; without a key 0."""
+        at = bisect_right(self.keys, beat, key=lambda key: key.beat)
+        return self.keys[at - 1].fifths if at else 0
 
     def place(self, beat: Fraction) -> tuple[str, Fraction]:
         """The bar of a beat, by its number, and the quarters since that bar began, from 0."""

@@ -1,12 +1,13 @@
 """Ornaments as touches of the fingers on one bow, timed by ear (docs/scores.md)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.rubato import at_time
 from yehu_server.scores.slides import logistic
-from yehu_server.scores.written.notated import Grace, Note
+from yehu_server.scores.written.layout import LETTERS, STEPS
+from yehu_server.scores.written.notated import Grace, Mark, Note
 
 GRACE_S = 0.085
 GRACE_SHARE = 0.5  # of a note, at most, for all its grace notes
@@ -15,7 +16,11 @@ TURN_SHARE = 0.2  # of a note, at most, for each note of a turn
 TRILL_S = 0.145  # from one tap to the next: some seven a second
 TRILL_LAST_S = 0.07  # of the plain note that ends it
 MAX_TAPS = 1000
-WHOLE, HALF = 2.0, 1.0  # default intervals: of trills and mordents above, and below
+WHOLE, HALF = 2.0, 1.0  # intervals to the notes above and below, where nothing says them
+# The steps of the key from a note to the others of its ornament; their intervals are its values.
+WAYS = {"trill": (1,), "mordent": (-1,), "inverted-mordent": (1,), "turn": (1, -1),
+        "inverted-turn": (1, -1)}  # fmt: skip
+NEAREST, FARTHEST = 0.5, 4.0  # semitones to a note of the key that an ornament touches
 WIDEST = 12.0  # semitones, that a hand reaches
 # By ear: a slide away takes so long, or so much of its note, and goes so far (semitones).
 SLIDE_S, SLIDE_SHARE, AWAY = 0.13, 0.4, 2.0
@@ -25,6 +30,7 @@ LAST_S = 0.002
 MAX_POINTS = 3000
 WIDEST_BEND = 24.0  # semitones
 Curve = list[tuple[float, float]]
+Around = tuple[float, float]  # semitones to the notes above and below
 
 
 class Touch(NamedTuple):
@@ -35,19 +41,53 @@ class Touch(NamedTuple):
     pitch: float
 
 
-def touches_of(note: Note, begin_s: float, end_s: float, trill: float | None) -> list[Touch]:
-    """Return the touches of a note, its own among them, in the order of their beginnings.
+def around(degree: int, own: float, pitch_of: Callable[[int], float]) -> Around:
+    """The intervals from a note to its neighbours in a scale, of which `pitch_of` has the degrees.
 
-    `trill` is the semitones to the other note of a trill that goes on from before, if one does.
+    Where a neighbour is no other note, or too far, it is a whole tone.
     """
-    if not (note.marks or note.before or note.after or trill):
+    up, down = pitch_of(degree + 1) - own, own - pitch_of(degree - 1)
+    return _near(up), _near(down)
+
+
+def _near(interval: float) -> float:
+    return interval if NEAREST <= interval <= FARTHEST else WHOLE
+
+
+def around_letter(
+    letter: str, octave: int, alter: float, alter_of: Callable[[str, int], float]
+) -> Around:
+    """The intervals to the notes on the next lines of a staff.
+
+    `alter_of` is the accidental that holds for a letter in an octave, by the bar or the key.
+    """
+
+    def pitch_of(degree: int) -> float:
+        octaves, at = divmod(degree, 7)
+        return 12.0 * octaves + STEPS[at] + alter_of(LETTERS[at], octave + octaves)
+
+    at = LETTERS.index(letter)
+    return around(at, STEPS[at] + alter, pitch_of)
+
+
+def filled(mark: Mark, intervals: Around) -> Mark:
+    """A mark, with the intervals that an ornament does not say of itself."""
+    said = (mark.value, mark.second)
+    ways = zip(WAYS.get(mark.name, ()), said, strict=False)
+    values = [intervals[way < 0] if value is None else value for way, value in ways]
+    return Mark(mark.name, *values) if values else mark
+
+
+def touches_of(note: Note, begin_s: float, end_s: float) -> list[Touch]:
+    """Return the touches of a note, its own among them, in the order of their beginnings."""
+    if not (note.marks or note.before or note.after):
         return [Touch(begin_s, end_s, note.pitch)]
     length_s = end_s - begin_s
     before = _graces(note.before, begin_s, length_s)
     after = _graces(note.after, end_s, length_s, backwards=True)
     first = before[-1].end_s if before else begin_s
     last = after[0].begin_s if after else end_s
-    main = _ornamented(note, first, last, trill)
+    main = _ornamented(note, first, last)
     if after:  # the note sounds until the first of the small ones holds
         main[0] = main[0]._replace(end_s=last + min(OVERLAP_S, 0.5 * (after[0].end_s - last)))
     before = [each._replace(end_s=each.end_s + _overlap(each)) for each in before]
@@ -73,30 +113,29 @@ def _graces(
     ]
 
 
-def _ornamented(note: Note, begin_s: float, end_s: float, trill: float | None) -> list[Touch]:
+def _ornamented(note: Note, begin_s: float, end_s: float) -> list[Touch]:
     """The note itself, held all along, and what other fingers touch meanwhile."""
     held = Touch(begin_s, end_s, note.pitch)
     for mark in note.marks:
+        if mark.name not in WAYS:
+            continue
+        values = filled(mark, (WHOLE, HALF))
+        steps = [
+            way * min(max(step or 0.0, -WIDEST), WIDEST)
+            for way, step in zip(WAYS[mark.name], (values.value, values.second), strict=False)
+        ]
         if mark.name == "trill":
-            trill = _step(mark.value, WHOLE)
-        elif mark.name in ("mordent", "inverted-mordent"):
-            is_up = mark.name == "inverted-mordent"
-            step = abs(_step(mark.value, WHOLE if is_up else HALF)) * (1.0 if is_up else -1.0)
-            tap_s = min(TAP_S, (end_s - begin_s) / 4.0)
-            return [held, Touch(begin_s + tap_s, begin_s + 2.0 * tap_s, note.pitch + step)]
-        elif mark.name in ("turn", "inverted-turn"):
-            return _turn(held, _step(mark.value, WHOLE), from_above=mark.name == "turn")
-    return [held, *_trill(held, _step(trill, WHOLE))] if trill else [held]
+            return [held, *_trill(held, *steps)]
+        if len(steps) > 1:
+            return _turn(held, steps if mark.name == "turn" else steps[::-1])
+        tap_s = min(TAP_S, (end_s - begin_s) / 4.0)
+        return [held, Touch(begin_s + tap_s, begin_s + 2.0 * tap_s, note.pitch + steps[0])]
+    return [held]
 
 
-def _step(semitones: float | None, default: float) -> float:
-    return default if semitones is None else min(max(semitones, -WIDEST), WIDEST)
-
-
-def _turn(held: Touch, above: float, *, from_above: bool) -> list[Touch]:
+def _turn(held: Touch, steps: Sequence[float]) -> list[Touch]:
     """Other, own, opposite, own: the own note is held under the other two."""
     tap_s = min(TAP_S, TURN_SHARE * (held.end_s - held.begin_s))
-    steps = (above, -HALF) if from_above else (-HALF, above)
     at = held.begin_s
     first = Touch(at, at + tap_s, held.pitch + steps[0])
     second = Touch(at + 2.0 * tap_s, at + 3.0 * tap_s, held.pitch + steps[1])

@@ -37,7 +37,6 @@ class Played(NamedTuple):
     end_s: float
     direction: float = 0.0  # of its bow, as `/playing/direction` has it; 0: the next one
     slide_s: float = 0.0  # how long the finger slides to it from the note before; 0: it does not
-    trill: float | None = None  # semitones to the other note of a trill that goes on over it
 
 
 def has_bowing(part: Part) -> bool:
@@ -53,7 +52,7 @@ def has_bowing(part: Part) -> bool:
 def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Played]:
     """Return each note of a part as it is played; `actives` are the signs that hold at each."""
     notes = part.notes
-    slurs, trills, *sliding = (_Over(part.spans, name) for name in ("slur", "trill", *SLIDES))
+    slurs, *sliding = (_Over(part.spans, name) for name in ("slur", *SLIDES))
     slides = dict(zip(SLIDES, sliding, strict=True))
     breaths = sorted(sign.beat for sign in part.signs if sign.name == "breath")
     silences = {sign.beat for sign in part.signs if sign.name == "caesura"}
@@ -68,9 +67,7 @@ def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Pl
                 end_s = _breathe(begin_s, end_s)
         if silences and note.end in silences:
             end_s -= min(CAESURA_S, 0.9 * (end_s - begin_s))
-        over = trills.over(note)
-        trill = None if over is None else 2.0 if over.value is None else over.value
-        played.append(Played(note, begin_s, end_s, trill=trill))
+        played.append(Played(note, begin_s, end_s))
     for at, (one, other) in enumerate(pairwise(notes)):
         if one.ends_at != other.begins_at or is_plucked(other, actives[at + 1]):
             continue

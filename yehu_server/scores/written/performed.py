@@ -165,7 +165,7 @@ class _Performer:
         if self._loudness.is_marked:
             self._swell(played)
         sounding = note if pitch == note.pitch else replace(note, pitch=pitch)
-        touches = touches_of(sounding, begin_s, played.end_s, played.trill)
+        touches = touches_of(sounding, begin_s, played.end_s)
         if slide_of(note) and node is None and len(touches) > 1:  # the first of them slides
             self._setting(touches[1].begin_s, SET, note.beat, ARTICULATION, None)
             self._set.pop(ARTICULATION, None)

@@ -96,7 +96,7 @@ def _stretches(written: Written) -> Iterator[Stretch]:
             if fermata or caesura:
                 factor = 1.0 if fermata is None else _held(fermata.value)
                 more_s = 0.0 if caesura is None else CAESURA_S
-                yield Stretch(note.beat, note.end, factor, more_s)
+                yield Stretch(note.held_from, note.end, factor, more_s)
         for sign in part.signs:
             if sign.name == "fermata":
                 yield Stretch(sign.beat, sign.beat + WAIT, _held(sign.value))

@@ -10,9 +10,9 @@ from typing import Any
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.params.articulations import ARTICULATIONS
-from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.scores.written.dynamics import LEVELS
 from yehu_server.scores.written.in_range import default_parts, moved_part
+from yehu_server.scores.written.layout import name_of
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Written
 
 ARTICULATED = {float(number): row.name for number, row in enumerate(ARTICULATIONS)}
@@ -36,19 +36,21 @@ def lines_of(written: Written, within: NoteRange = YEHU) -> Iterator[str]:
     played = next(iter(default_parts(written, within)), None)
     for number, (part, name) in enumerate(zip(written.parts, written.names, strict=True), start=1):
         yield ""
-        yield f"part {number}: {name}, {_summary(part, within, is_played=number - 1 == played)}"
+        summary = _summary(written, part, within, is_played=number - 1 == played)
+        yield f"part {number}: {name}, {summary}"
         yield f"{'bar':>5}  {'quarter':<8}  {'note':<7}  {'length':<7}  marks"
         yield from _notes(written, part)
     yield ""
     yield from [*written.warnings, *written.not_understood] or ["all marks understood"]
 
 
-def _summary(part: Part, within: NoteRange, *, is_played: bool) -> str:
+def _summary(written: Written, part: Part, within: NoteRange, *, is_played: bool) -> str:
     """The number and range of a part's notes, and whether it is played and moved."""
     if not part.notes:
         return "0 notes, not played"
-    pitches = [note.pitch for note in part.notes]
-    lowest, highest = note_name(min(pitches)), note_name(max(pitches))
+    by_pitch = sorted(part.notes, key=lambda note: note.pitch)
+    ends = by_pitch[0], by_pitch[-1]
+    lowest, highest = (name_of(each.pitch, written.fifths_at(each.beat)) for each in ends)
     text = f"{len(part.notes)} note{'' if len(part.notes) == 1 else 's'}, {lowest} to {highest}"
     if is_played:
         text += ", played where no other is asked for"
@@ -67,15 +69,16 @@ def _notes(written: Written, part: Part) -> Iterator[str]:
     last = ""
     for note in part.notes:
         bar, quarters = written.place(note.beat)
-        marks = [*around.get(note.beat, ()), *_graces("before", note.before)]
+        fifths = written.fifths_at(note.beat)
+        marks = [*around.get(note.beat, ()), *_graces("before", note.before, fifths)]
         marks += map(_mark, note.marks)
         if note.contour:
             marks.append("the pitch moves")
-        marks += _graces("after", note.after)
+        marks += _graces("after", note.after, fifths)
         shown = "" if bar == last else bar
         last = bar
         yield (
-            f"{shown:>5}  {_mixed(quarters + 1):<8}  {note_name(note.pitch):<7}  "
+            f"{shown:>5}  {_mixed(quarters + 1):<8}  {name_of(note.pitch, fifths):<7}  "
             f"{_mixed(note.length):<7}  {', '.join(marks)}"
         ).rstrip()
 
@@ -105,12 +108,15 @@ def _around(written: Written, part: Part) -> dict[Fraction, list[str]]:
 def _mark(mark: Mark) -> str:
     if mark.name in ("articulation", "gesture") and mark.value in ARTICULATED:
         return ARTICULATED[mark.value]
-    return mark.name if mark.value is None else f"{mark.name} {mark.value:g}"
+    if mark.value is None:
+        return mark.name
+    values = [value for value in (mark.value, mark.second) if value is not None]
+    return " ".join([mark.name, *(f"{value:g}" for value in values)])
 
 
-def _graces(where: str, graces: tuple[Grace, ...]) -> Iterator[str]:
+def _graces(where: str, graces: tuple[Grace, ...], fifths: int) -> Iterator[str]:
     if graces:
-        yield f"{where}: {' '.join(note_name(grace.pitch) for grace in graces)}"
+        yield f"{where}: {' '.join(name_of(grace.pitch, fifths) for grace in graces)}"
 
 
 def _mixed(value: Fraction) -> str:
@@ -152,7 +158,9 @@ def _note(written: Written, note: Note) -> dict[str, Any]:
         "beat": float(note.beat),
         "length": float(note.length),
         "pitch": note.pitch,
-        "marks": [[mark.name, mark.value] for mark in note.marks],
+        "marks": [
+            [mark.name, mark.value, *([mark.second] if mark.second else [])] for mark in note.marks
+        ],
         "before": [grace.pitch for grace in note.before],
         "after": [grace.pitch for grace in note.after],
         "contour": [list(point) for point in note.contour],

@@ -12,6 +12,7 @@ from fractions import Fraction
 
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Grace, Mark, Note, OpenSpan, Part, Sign, Span
+from yehu_server.scores.written.ornaments import HALF, WHOLE, Around, filled
 from yehu_server.scores.written.repeats import BarLines
 
 FINEST = 1 << 24  # the smallest part of a quarter note is this one
@@ -33,6 +34,7 @@ class RawNote:
     pitch: float
     voice: tuple[str, str]  # staff and voice
     marks: list[Mark] = field(default_factory=list)
+    around: Around = (WHOLE, HALF)
     is_grace: bool = False
     is_after: bool = False  # a grace note that belongs to the note before it
     ties: set[str] = field(default_factory=set)  # start, stop
@@ -77,7 +79,7 @@ class Voice:
     staff: list[Voice] = field(default_factory=list)  # all voices of its staff
     _graces: list[Grace] = field(default_factory=list)
     _tied: dict[float, int] = field(default_factory=dict)  # by pitch, the note that goes on
-    _open: dict[tuple[str, str], tuple[Fraction, float | None]] = field(default_factory=dict)
+    _open: dict[tuple[str, str], Fraction] = field(default_factory=dict)
 
     def add_bar(self, notes: list[RawNote], begin: Fraction) -> None:
         """Add the notes of a bar that begins at a beat."""
@@ -92,7 +94,7 @@ class Voice:
             self._graces = []
 
     def _grace(self, raw: RawNote, begin: Fraction) -> None:
-        grace = Grace(raw.pitch, raw.length, tuple(raw.marks))
+        grace = Grace(raw.pitch, raw.length, _marks(raw))
         self._ends(raw, begin + raw.at)
         if raw.is_after and self.notes:
             self._after([grace])
@@ -113,13 +115,12 @@ class Voice:
             return
         if at is not None and self.notes[at].end == beat:
             note = self.notes[at]
-            more = tuple(mark for mark in raw.marks if mark not in note.marks)
-            self.notes[at] = replace(note, length=note.length + raw.length, marks=note.marks + more)
+            self.notes[at] = note.longer(raw.length, _marks(raw), note.length)
         else:
             self._shorten_last(beat)
             at = len(self.notes)
             graces, self._graces = tuple(self._graces), []
-            self.notes.append(Note(beat, raw.length, raw.pitch, tuple(raw.marks), graces))
+            self.notes.append(Note(beat, raw.length, raw.pitch, _marks(raw), graces))
         if "start" in raw.ties:
             self._tied[raw.pitch] = at
         if raw.ends:
@@ -130,7 +131,8 @@ class Voice:
         at = self._tied.get(raw.pitch)
         if at is None or at != len(self.notes) - 1 or self.notes[at].end != beat:
             return False
-        self.notes[at] = replace(self.notes[at], length=self.notes[at].length + raw.length)
+        note = self.notes[at]
+        self.notes[at] = note.longer(raw.length, _marks(raw), note.length)
         if "start" not in raw.ties:
             del self._tied[raw.pitch]
         return True
@@ -147,22 +149,20 @@ class Voice:
 
     def _ends(self, raw: RawNote, beat: Fraction) -> None:
         """Begin and end the spans of a note; those that end, first."""
-        trill = next((mark.value for mark in raw.marks if mark.name == "trill"), None)
         for kind in ("stop", "start"):
             for name, which, number in raw.ends:
                 if which != kind or name == "tremolo":
                     continue
                 if kind == "start":
-                    value = trill if name == "wavy-line" else None
-                    self._open[name, number] = (beat, value)
-                    if name == "wavy-line" and trill is None:
+                    self._open[name, number] = beat
+                    if name == "wavy-line":
                         raw.marks.append(Mark("vibrato"))
                 elif (name, number) in self._open:
-                    opened, value = self._open.pop((name, number))
-                    if name == "wavy-line" and value is None:
+                    opened = self._open.pop((name, number))
+                    if name == "wavy-line":
                         self._vibrate(opened, raw)
-                        continue
-                    self.spans.append(Span(SPANS.get(name, "trill"), opened, beat, value))
+                    else:
+                        self.spans.append(Span(SPANS[name], opened, beat))
 
     def _vibrate(self, begin: Fraction, last: RawNote) -> None:
         """Let the notes after the first one of a wavy line have a vibrato, too."""
@@ -186,6 +186,10 @@ class Voice:
         self.notes[-2] = replace(one, marks=(*one.marks, Mark("trill", step)))
         self.notes[-1] = replace(other, marks=(*other.marks, Mark("trill", -step)))
         self.spans.append(Span("slur", one.beat, other.beat))
+
+
+def _marks(raw: RawNote) -> tuple[Mark, ...]:
+    return tuple(filled(mark, raw.around) for mark in raw.marks)
 
 
 class Directions:

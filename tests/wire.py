@@ -140,7 +140,7 @@ class FakePeer:
         self.packets.append(packet)
 
     def at(self, port: int) -> "FakePeer":
-        return self.others.setdefault(port, FakePeer(port))
+        return self.others.setdefault(port, FakePeer(port, self.host))
 
     def received(self) -> list[Message]:
         """The messages since the last call."""

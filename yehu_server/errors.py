@@ -5,7 +5,7 @@ the command line can print the message and leave with exit code 2.
 """
 
 import unicodedata
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Sequence
 
 
 class YehuError(Exception):
@@ -78,8 +78,10 @@ _OTHER_WORDS = {
     "score": "convert export",
     "serve": "play live start run server midi osc",
     "/room/level": "reverb wet mix",
-    "/panic": "allnotesoff all_notes_off alloff",
-    "/pitch": "freq frequency",
+    "/note": "play noteon note_on key",
+    "/panic": "allnotesoff all_notes_off alloff stop",
+    "/pitch": "freq frequency slide glide",
+    "/playing/press": "aftertouch",
     "/preset/load": "program",
 }
 
@@ -90,40 +92,57 @@ def _synonyms(word: str) -> list[str]:
 
 def did_you_mean(word: object, known: Collection[str], least: float = 0.7) -> str:
     """A hint at the known word that means the same, or is at least as like; empty without one."""
-    same = next((each for each in _synonyms(str(word).lstrip("-")) if each in known), None)
-    return _hint(same) if same else _most_like(str(word), {each: each for each in known}, least)
+    bare = {each.lstrip("-"): each for each in known}
+    found = [each for each in _synonyms(str(word).lstrip("-")) if each in known]
+    near = found[:1] or [bare[each] for each in _near(str(word).lstrip("-"), bare, least)]
+    return _hint(near)
 
 
-def near_address(
-    address: str, known: Collection[str], least: float = 0.7, *, prefix: str = ""
-) -> str:
-    """The same of addresses: one that ends in its name, a group of them, or one that is like it."""
+def near_address(address: str, known: Collection[str], *, prefix: str = "") -> str:
+    """The same of addresses: those that end in it or begin with it, else one like it."""
     path = address.rstrip("/")
-    name = path.rpartition("/")[2]
-    groups = {group: f"{group}/..." for each in known if (group := each.rpartition("/")[0])}
-    groups.pop(prefix, None)
-    ends = [f"/{path.removeprefix(prefix).lstrip('/')}", *_synonyms(name)]
-    found = [each for end in ends for each in known if end[0] == "/" and each.endswith(end)]
-    found += [groups[path]] if path in groups else []
+    own = f"/{path.removeprefix(prefix).lstrip('/')}"
+    name = own.rpartition("/")[2]
+    ends = [*(_synonyms(name) if own == f"/{name}" else ()), own]
+    found = [each for end in ends for each in known if end[:1] == "/" and each.endswith(end)]
+    groups = {each.rpartition("/")[0] for each in known} - {"", prefix}
     if len(name) >= SHORTEST_BEGINNING:
-        found += sorted((each for each in known if each.startswith(path)), key=len)
-    shown = groups | {each: each for each in known}
-    if found:
-        return _hint(found[0])
-    names = {each.rpartition("/")[2]: each for each in reversed([*known])} if name == path else {}
-    return _most_like(name, names, 0.7) or _most_like(path, shown, least)
+        begun = [each for each in {*known, *groups} if each.startswith(path)]
+        begun = [each for each in begun if "/" not in each[len(path) :]]
+        found += sorted(begun, key=lambda each: (len(each), each))[:1]
+    if not found and name == path:
+        names = {each.rpartition("/")[2]: each for each in reversed([*known])}
+        found = [names[each] for each in _near(name, names)]
+    found = found or [each for each in [_like_part_by_part(path, known)] if each]
+    return _hint([each if each in known else f"{each}/..." for each in dict.fromkeys(found)])
 
 
-def _most_like(word: str, shown: Mapping[str, str], least: float) -> str:
+def _like_part_by_part(path: str, known: Collection[str]) -> str:
+    """The address, or the group, each part of which is like that of a path; else empty.
+
+    Of a path that goes on beyond an address it is that address.
+    """
+    at = ""
+    for part in path.split("/")[1:]:
+        below = [each[len(at) + 1 :] for each in known if each.startswith(f"{at}/")]
+        near = _near(part, {each.partition("/")[0] for each in below})
+        if not near:
+            return at if at in known else ""
+        at += f"/{near[0]}"
+    return at
+
+
+def _near(word: str, words: Collection[str], least: float = 0.75) -> list[str]:
+    """The one of some words that is most like another, at least so much; empty without one."""
     import difflib  # takes some milliseconds
 
-    bare = {each.lstrip("-"): text for each, text in shown.items()}
-    found = difflib.get_close_matches(word[:LONGEST_WORD].lstrip("-"), bare, n=1, cutoff=least)
-    return _hint(bare[found[0]]) if found else ""
+    folded = {each.casefold(): each for each in words}
+    word = word[:LONGEST_WORD].casefold()
+    return [folded[each] for each in difflib.get_close_matches(word, folded, n=1, cutoff=least)]
 
 
-def _hint(word: str) -> str:
-    return f"; did you mean {word}?"
+def _hint(words: Sequence[str]) -> str:
+    return f"; did you mean {' or '.join(words[:2])}?" if words else ""
 
 
 FIRST, LAST = 600, 400  # characters kept of a long line; the reason may be at either end

@@ -6,7 +6,7 @@ from wire import f32
 
 from yehu_server.core.engine.instrument import Instrument
 from yehu_server.live.osc import clients, handler
-from yehu_server.live.osc.all_calls import more_calls
+from yehu_server.live.osc.all_calls import CALLS, more_calls
 from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.status import PART_STATUS, STATUS
@@ -103,11 +103,15 @@ def test_what_all_share_is_of_no_part(still, players):
     before = [player.values() for player in players]
     for address in SHARED:
         still.clock.now += clients.FORGIVEN_S
-        for asked in (f"/part/1{address}", f"/part/2{address}/unit"):
-            (error,) = errors(still.ask(asked, 1.0))
-            assert error == f"{address} is one for all parts: /yehu{address}"
+        for part, asked in (1, address), (2, f"{address}/unit"):
+            (error,) = errors(still.ask(f"/part/{part}{asked}", 1.0))
+            assert error == f"{asked} is one for all parts: /yehu{asked}"
         (error,) = errors(still.ask("/get", f"/yehu/part/2{address}"))
         assert "one for all parts" in error
+    for call in (call.address for call in CALLS if call.is_for_all):
+        still.clock.now += clients.FORGIVEN_S
+        (error,) = errors(still.ask(f"/part/2{call}", "x"))
+        assert error == f"{call} is one for all parts: /yehu{call}"
     assert [player.values() for player in players] == before
 
 

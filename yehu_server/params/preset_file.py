@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from yehu_server.errors import ParameterError, PresetError, did_you_mean
+from yehu_server.errors import ParameterError, PresetError, near_address
 from yehu_server.params.table import BY_ADDRESS, TABLE
 from yehu_server.util.documents import MAX_ERRORS, Document
 from yehu_server.util.values import whole, words
@@ -49,7 +49,7 @@ class Preset:
         """Warnings about the unknown addresses of a file, a line each."""
         lines = []
         for address in self.unknown[:MAX_REMARKS]:
-            hint = did_you_mean(address, POSSIBLE)
+            hint = near_address(address, POSSIBLE)
             lines.append(f"{self.name}: unknown parameter {address!r}, left out{hint}")
         if len(self.unknown) > MAX_REMARKS:
             lines.append(f"{self.name}: and {len(self.unknown) - MAX_REMARKS} more")

@@ -30,9 +30,10 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/get", [("",), ("/nothing",), ("/note",), ("/z*",), ("/yehu",)], ""),
     ("/get", [("/bow/[fs",), ("/bow/{force,side",), ("[",), ("{",)], "never closed"),
     ("/get", [("/bow/" + "*" * 5000,)], "too long"),
-    ("/get", [("/status/zither",)], "unknown status value '/status/zither'"),
-    ("/get", [("/status/nota",)], "'/status/nota'; did you mean /status/note?"),
-    ("/status/nota", [(1.0,)], "'/status/nota'; did you mean /status/note?"),
+    ("/get", [("/status/nota",)], "did you mean /yehu/status/note?"),
+    ("/get", [("/yehu/note",)], "/yehu/note has no value"),
+    ("/get", [("/yehu/*/status/note",)], "matches no address; * ends at a /"),
+    ("/status/nota", [(1.0,)], "did you mean /yehu/status/note?"),
     ("/status/note", [(60.0,)], "the status cannot be set; ask for it by /yehu/get"),
     ("/subscribe", [("x",), (10, "x"), (10, 0), (10, -1), (10, 65536), (10, 7.5), (1, 2, 3)], ""),
     ("/subscribe", [(NAN,), (10, INF)], ""),
@@ -62,7 +63,13 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     # A similar address is suggested, of parameters and of calls.
     ("/bow/forc", [(0.5,)], "did you mean /yehu/bow/force?"),
     ("/bow/forc/unit", [(0.5,)], "did you mean /yehu/bow/force/unit?"),
-    ("/force", [(0.5,)], "did you mean /yehu/bow/force?"),
+    ("/save", [(0.5,)], "did you mean /yehu/preset/save?"),
+    ("/position", [(0.5,)], "did you mean /yehu/bow/position or /yehu/finger/1/position?"),
+    ("/stop", [NOTHING], "did you mean /yehu/panic or /yehu/record/stop?"),
+    ("/note/on", [(67, 90)], "did you mean /yehu/note?"),
+    ("/slide", [(67,)], "did you mean /yehu/pitch?"),
+    ("/aftertouch", [(0.5,)], "did you mean /yehu/playing/press?"),
+    ("/part/two/note", [(67, 90)], "a part is a number: /yehu/part/1/..."),
     ("/plaing", [(0.5,)], "did you mean /yehu/playing/...?"),
     ("/reverb", [(0.5,)], "did you mean /yehu/room/level?"),
     ("/room", [("hall",)], "a room is a preset: /yehu/preset/load hall"),
@@ -74,11 +81,11 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
         (address, [(0.123,)], "")
         for address in (
             *("", "/", "/bow/", "/bow/force/", "//bow/force", "/bow/force ", "/bow/fôrce"),
-            *("/bow/[z]*", "/nothing*", "/bow*", "/?", "/bow/[", "/bow/{a", "/" + "*" * 300),
+            *("/bow/[z]*", "/nothing*", "/bow**/", "/?", "/bow/[", "/bow/{a", "/" + "*" * 300),
         )
     ),
 ]
-UNKNOWN = ["/bow/force", "/yehubow/force", "/YEHU/bow/force", "/", "//", "/ÿehu/" + "x" * 300]
+UNKNOWN = ["/bow/force", "/yehubow/force", "/", "//", "/ÿehu/" + "x" * 300]
 
 
 def test_what_cannot_be_done_is_answered_with_the_reason_and_changes_nothing(
@@ -104,6 +111,13 @@ def test_what_cannot_be_done_is_answered_with_the_reason_and_changes_nothing(
     assert not list(own_presets.parent.rglob("*.toml"))
 
 
+def test_nothing_is_suggested_that_is_little_like_it(still, subtests):
+    for name in ("quit", "mute", "tempo", "playing/nix", "bow_speeed"):
+        with subtests.test(name=name):
+            (refused,) = still.ask(f"/{name}", 1.0)
+            assert refused.arguments[1] == "unknown address"
+
+
 def test_a_malformed_packet_is_counted_and_answered(still):
     packets = [
         b"",
@@ -117,6 +131,7 @@ def test_a_malformed_packet_is_counted_and_answered(still):
         still.take(packet)
         (refused,) = still.peer.received()
         assert "malformed" in refused.arguments[1]
+        assert packet[:1] in b"/#" or "an address begins with /" in refused.arguments[1]
     assert still.handler.counts.malformed == len(packets)
 
 

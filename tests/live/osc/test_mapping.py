@@ -47,7 +47,9 @@ def test_patterns_reach_ones_own_addresses_too(own_still, wire):
     assert say(own_still, wire, "/fader{2,3}", 1) == []
     assert own_still.value("/playing/expression") == 0.0
     assert own_still.value(VOLUME) == 0.0
-    assert say(own_still, wire, "/fadr*", 1) == ["/fadr* the pattern matches no address"]
+    assert say(own_still, wire, "/fadr*", 1) == [
+        "/fadr* the pattern matches no address; * ends at a /"
+    ]
 
 
 def test_what_ones_own_address_cannot_mean_is_answered(own_still, wire):
@@ -58,6 +60,16 @@ def test_what_ones_own_address_cannot_mean_is_answered(own_still, wire):
         ("/fader1", (float("nan"),), "nan is not finite"),
         ("/fader3", (0.5,), "unknown address (all but learned ones begin with /yehu/)"),
         ("/yehu/fader1", (0.5,), "unknown address"),
+        (
+            "/fadr1",
+            (0.5,),
+            "unknown address (all but learned ones begin with /yehu/); did you mean /fader1?",
+        ),
+        (
+            "/YEHU/note",
+            (67, 90),
+            "unknown address (all but learned ones begin with /yehu/); did you mean /yehu/note?",
+        ),
     ]:
         (error,) = say(own_still, wire, address, *arguments)
         assert error.startswith(f"{address} {reason}")

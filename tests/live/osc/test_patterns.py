@@ -6,9 +6,12 @@ import time
 
 from hypothesis import example, given
 from hypothesis import strategies as st
+from wire import errors
 
 from yehu_server.errors import RefusedError
 from yehu_server.live import traffic_limits as limits
+from yehu_server.live.osc import clients
+from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.osc_addresses import matches
 from yehu_server.params.table import TABLE
 
@@ -97,3 +100,39 @@ def test_a_twisted_pattern_takes_no_longer_than_a_plain_one_should(subtests):
             for param in TABLE:
                 matches(pattern[: limits.PATTERN], "/yehu" + param.address)
             assert time.thread_time() - started < 0.5
+
+
+# ---------------------------------------------------------------- what they reach
+
+PLAYS = {"/note", "/note/off", "/pitch", "/bow", "/bend", "/press", "/articulation", "/release"}
+
+
+def test_a_pattern_reaches_what_plays_and_nothing_that_loses_something(
+    still, subtests, own_presets
+):
+    assert {call.address for call in CALLS if call.takes_patterns} == PLAYS
+    still.ask("/preset/save", "mine")
+    before = still.player.values()
+    for call in CALLS:
+        pattern = f"/yehu{call.address[:-1]}[{call.address[-1]}]"
+        if call.address not in PLAYS:
+            with subtests.test(call=call.address):
+                still.clock.now += clients.FORGIVEN_S
+                (refused,) = still.ask(pattern.removeprefix("/yehu"), "mine")
+                assert refused.arguments == [pattern, refused_of(call.address)]
+    still.ask("/*", 1)
+    still.ask("/preset/*", "mine")
+    still.pass_time(0.01)
+    (own_presets / "mine.toml").unlink()  # which is still there
+    assert still.handler.clients.subscribers == 0
+    changed = {"/playing/bend", "/playing/press"}
+    assert {one for one, value in still.player.values().items() if before[one] != value} == changed
+
+
+def refused_of(call: str) -> str:
+    return f"/yehu{call} takes no pattern: send its whole address"
+
+
+def test_the_error_of_a_pattern_names_the_address_that_failed(still):
+    heard = still.ask("/{note,pitch,bend}", 67)
+    assert errors(heard) == ["/yehu/note"]

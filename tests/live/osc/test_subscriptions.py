@@ -39,16 +39,19 @@ def test_another_server_may_follow_and_neither_answers_the_other(live, make_live
     assert follower.handler.counts.errors == 0
 
 
-def test_a_client_names_the_port_it_listens_on(live):
+@pytest.mark.parametrize("is_ended_by_who_began_it", [True, False])
+def test_a_client_names_the_port_it_listens_on(live, is_ended_by_who_began_it):
     speaks, listens, other = live.client(), live.client(), live.client()
+    ends = speaks if is_ended_by_who_began_it else other
     speaks.send("/subscribe", 30, listens.port)
-    assert listens.wait_for("/subscribed") == [30.0]
+    assert listens.wait_for("/subscribed") == speaks.wait_for("/subscribed") == [30.0]
     listens.all()
     other.send("/playing/volume", 0.25)
     assert listens.wait_for("/playing/volume") == [0.25]
     assert speaks.all() == []
-    speaks.send("/unsubscribe", listens.port)
-    listens.wait_for("/unsubscribed")
+    ends.send("/unsubscribe", *[listens.port] * (ends is other))
+    for hears in (ends, listens):
+        assert hears.wait_for("/unsubscribed") == []
     other.send("/playing/volume", 0.5)
     other.wait_for("/playing/volume")
     assert listens.all() == []
@@ -106,6 +109,16 @@ def test_a_server_never_talks_to_itself(make_live, kit, until, host):
     until(lambda: are_still(live), "it to have said all")
     client.close()
     assert live.handler.counts.messages == 1  # the client's alone
+
+
+def test_none_end_what_is_not_subscribed(still):
+    for call, words in ("/unsubscribe", ()), ("/unsubscribe", (7400,)), ("/subscribe", (0,)):
+        (refused,) = still.ask(call, *words)
+        assert refused.arguments[1].startswith("nothing is subscribed")
+    still.ask("/subscribe", 60, 7400)
+    assert still.handler.clients.subscribers == 1
+    assert "/yehu/unsubscribed" in [one.address for one in still.ask("/unsubscribe")]
+    assert still.handler.clients.subscribers == 0
 
 
 # ---------------------------------------------------------------- the status

@@ -24,6 +24,7 @@ from yehu_server.playing.sources import is_address
 _KINDS: tuple[type[GroupCalls], ...] = (PartCalls, PresetCalls, LearnCalls, ServerCalls)
 _ROWS = [(kind, row) for kind in _KINDS for row in vars(kind).values() if isinstance(row, Call)]
 CALLS: tuple[Call, ...] = tuple(row for _, row in _ROWS)
+NAMED_IN_FULL = frozenset(call.address for call in CALLS if not call.takes_patterns)
 
 
 def acts(group: str, context: CallContext) -> dict[str, Act]:

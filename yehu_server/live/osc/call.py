@@ -124,6 +124,7 @@ class Call:
     # Carries it out for a group of addresses; raises YehuError where it refuses.
     act: Callable[[Any, Request], None]
     is_for_all: bool = False  # whether no part has one of its own
+    takes_patterns: bool = False  # whether a pattern reaches it: what plays, and loses nothing
     reads_files: bool = False  # whether it waits for files that are being written
 
 
@@ -141,3 +142,10 @@ def like(address: str, name: str) -> Argument:
 
 
 ADDRESS, NAME = Argument("address", "s"), Argument("name", "s")
+
+
+def port_of(number: float) -> int:
+    """The port of an argument; raises RefusedError where it is none."""
+    if not 0 < number <= 65535 or number != int(number):
+        raise RefusedError(f"{number:g} is not a port")
+    return int(number)

@@ -75,20 +75,22 @@ class Clients:
         command of a shell, it is the only one that its host named. So Max hears the answers, whose
         senders and receivers have different ports.
         """
-        if not self._named:
-            return [peer]
+        named = self._listeners(peer)
+        own = [listener for listener, sender in named.items() if sender == peer]
+        if not own and len(named) == 1 and not self.is_subscribed(peer):
+            own = list(named)
+        return [peer, *own]
+
+    def _listeners(self, peer: Peer) -> dict[Peer, Peer]:
+        """The subscribers at ports that a peer's host named, and who named each."""
         now = time.monotonic()
-        named = {
+        return {
             listener: sender
             for listener, sender in self._named.items()
             if listener.host == peer.host
             and type(listener) is type(peer)
             and self._clients[listener].subscribes(now)
         }
-        own = [listener for listener, sender in named.items() if sender == peer]
-        if not own and len(named) == 1 and not self.is_subscribed(peer):
-            own = list(named)
-        return [peer, *own]
 
     def send(self, peer: Peer, packet: bytes) -> None:
         """Send a peer an answer."""
@@ -146,9 +148,20 @@ class Clients:
             self._named[peer] = sender
         return True
 
-    def unsubscribe(self, peer: Peer) -> None:
-        """End a peer's subscriptions."""
-        self._client(peer).subscribed.clear()
+    def unsubscribe(self, peer: Peer, at: Peer | None = None) -> list[Peer]:
+        """End subscriptions: `at` one peer, or a peer's own and those at ports that it named.
+
+        Returns whose they were.
+        """
+        named = [one for one, sender in self._listeners(peer).items() if sender == peer]
+        those = [peer, *named] if at is None else [at]
+        now = time.monotonic()
+        ended = [
+            one for one in those if one in self._clients and self._clients[one].subscribes(now)
+        ]
+        for one in ended:
+            self._clients[one].subscribed.clear()
+        return ended
 
     def listen(self, peer: Peer, address: str) -> None:
         """Send a peer the value at an address (without the prefix) now, and whenever it changes."""

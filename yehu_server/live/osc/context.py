@@ -1,13 +1,13 @@
 """What OSC calls share: players, clients, and what they need of the server."""
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-from yehu_server.errors import OutputError, YehuError, shortened
+from yehu_server.errors import OutputError, RefusedError, YehuError, shortened
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.osc.call import Request
+from yehu_server.live.osc.call import Request, port_of
 from yehu_server.live.osc.clients import Clients
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
@@ -44,6 +44,7 @@ class CallContext:
     call_soon: Callable[[Callable[[], None]], object]
     # Called with a path where the tree of addresses has changed at it or below.
     on_tree_change: list[Callable[[str], None]] = field(default_factory=list)
+    addresses: Collection[str] = ()  # of all calls and parameters, with the prefix
     schedule: Schedule = field(default_factory=Schedule)
     counts: Counts = field(default_factory=Counts)
     writes: set[object] = field(default_factory=set)  # a mark for each file that is being written
@@ -163,6 +164,22 @@ class GroupCalls:
     def _send(self, peer: Peer, address: str, *arguments: float | str) -> None:
         """Send a peer an answer of the group."""
         self._clients.send(peer, pack(self._prefix + address, *arguments))
+
+    def _end_subscriptions(self, peer: Peer, ports: Sequence[float]) -> None:
+        """End a peer's subscriptions, or those at a port that it names; tell it, and who had them.
+
+        Raises RefusedError where there are none.
+        """
+        at = peer.at(port_of(ports[0])) if ports else None
+        told = self._clients.answered(peer)
+        ended = self._clients.unsubscribe(peer, at)
+        if not ended:
+            where = (
+                f"at port {ports[0]:g}" if ports else "from this port; /unsubscribe PORT names one"
+            )
+            raise RefusedError(f"nothing is subscribed {where}")
+        for one in dict.fromkeys((*told, *ended)):
+            one.send(pack(f"{self._prefix}/unsubscribed"))
 
     def _send_error(self, peer: Peer, address: str, reason: str) -> None:
         """Send a peer the reason why a call of the group was refused."""

@@ -8,11 +8,11 @@ import time
 from collections.abc import Iterator
 from functools import partial
 
-from yehu_server.errors import YehuError
-from yehu_server.live.osc.all_calls import acts, own_calls, owners
+from yehu_server.errors import RefusedError, YehuError
+from yehu_server.live.osc.all_calls import NAMED_IN_FULL, acts, own_calls, owners
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.context import Act, CallContext
-from yehu_server.live.osc.osc_addresses import fitting, is_pattern, near
+from yehu_server.live.osc.osc_addresses import fitting, is_pattern, unknown
 from yehu_server.live.osc.packets import Message, PacketError, answer, steps
 from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.playing_calls import PartCalls, within_an_hour
@@ -48,7 +48,9 @@ class OscHandler:
         self._acts: dict[str, Act] = {}
         for group in self._groups:
             self._acts |= acts(group, context)
-        self.addresses = tuple(PREFIX + address for address in self._acts)
+        self.addresses = context.addresses = tuple(PREFIX + address for address in self._acts)
+        whole = (one for one in self._acts if split_group(one)[1] in NAMED_IN_FULL)
+        self._named_in_full = {PREFIX + address for address in whole}
         # Messages of another server that was made to send us its values.
         self._answers: dict[str, Act] = {
             f"{PREFIX}/{answer}": lambda _call: None for answer in ("error", "moved")
@@ -92,14 +94,15 @@ class OscHandler:
                 is_late |= message.due_s is not None
                 call = Request(message.arguments, message.payload, peer, frame)
                 queue = self._queues.queue_of(peer, frame)
-                for number, action in enumerate(self._actions(message.address, peer)):
+                actions = self._actions(message.address, peer).items()
+                for number, (address, action) in enumerate(actions):
                     if number:
                         yield
                     sender = SENDER.set(queue)
                     try:  # one refusal does not stop the others that match a pattern
                         action(call)
                     except YehuError as error:
-                        self.context.send_error(peer, message.address, str(error))
+                        self.context.send_error(peer, address, str(error))
                     finally:
                         SENDER.reset(sender)
         except PacketError as error:
@@ -138,34 +141,38 @@ class OscHandler:
         waits = self._schedule.wait_s(), self.clients.wait_s(), LONGEST_WAIT_S
         return min(wait for wait in waits if wait is not None)
 
-    def _actions(self, address: str, peer: Peer) -> list[Act]:
-        """What carries out the calls at an address; sends the peer an error where there is none."""
+    def _actions(self, address: str, peer: Peer) -> dict[str, Act]:
+        """What carries out the calls at an address or pattern; sends an error where none does."""
         try:
             actions = self._found(address)
         except YehuError as error:
             self.context.send_error(peer, address, str(error))
-            return []
+            return {}
         if not actions:  # a near address is searched for only where the error is sent
-            reason = partial(near, address, len(self._players), self._acts)
+            known = (*self._own_acts(), *self.addresses)
+            reason = partial(unknown, address, len(self._players), known)
             self.context.send_error(peer, address, reason)
         return actions
 
-    def _found(self, address: str) -> list[Act]:
-        """What carries out the calls at an address; none where it is unknown."""
+    def _found(self, address: str) -> dict[str, Act]:
+        """By address, what carries out the calls at one or at a pattern; none where unknown."""
         known = address.removeprefix(PREFIX)
         if address in self._answers:
-            return [self._answers[address]]
+            return {address: self._answers[address]}
         if known in self._acts and known != address:
-            return [self._acts[known]]
+            return {address: self._acts[known]}
         own = self._own_acts()
         if is_own(address) or split_group(known)[0]:
             own = own | self._learn_acts(address, own)
         if address in own:
-            return [own[address]]
+            return {address: own[address]}
         if is_pattern(address):
             found = fitting(address, (*self.addresses, *own))
-            return [own.get(one) or self._acts[one.removeprefix(PREFIX)] for one in found]
-        return []
+            reached = [one for one in found if one not in self._named_in_full]
+            if not reached:
+                raise RefusedError(f"{found[0]} takes no pattern: send its whole address")
+            return {one: own.get(one) or self._acts[one.removeprefix(PREFIX)] for one in reached}
+        return {}
 
     def _own_acts(self) -> dict[str, Act]:
         """For addresses that mappings bind; without a part, those of `owners`."""

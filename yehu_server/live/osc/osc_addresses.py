@@ -6,14 +6,14 @@ than its length times the address's: a regular expression may take for ever.
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import cache, lru_cache
 
-from yehu_server.errors import ParameterError, RefusedError, YehuError, did_you_mean, near_address
+from yehu_server.errors import ParameterError, RefusedError, near_address
 from yehu_server.live import part_addresses
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.status import PART_STATUS, STATUS, STATUS_PREFIX
-from yehu_server.params.table import PREFIX, TABLE, UNIT, find
+from yehu_server.params.table import PREFIX, TABLE, UNIT
 
 SPECIAL = frozenset("*?[{")
 _PIECES = re.compile(r"(\*+)|(\?)|\[(!?)([^]]*)\]|\{([^}]*)\}|([^*?[{]+)|(.)", re.DOTALL)
@@ -104,50 +104,44 @@ def readable(parts: int) -> dict[str, None]:
     return dict.fromkeys((*values, *status))
 
 
-def parameter_of(address: str) -> str:
-    """Find a parameter; raise ParameterError, with a similar address if there is one."""
-    names = list(dict.fromkeys((*NAMES, *PART_NAMES)))
-    if address.startswith(STATUS_PREFIX):
-        name = address.removeprefix(STATUS_PREFIX)
-        if name in names:
-            raise ParameterError(f"the status cannot be set; ask for it by {PREFIX}/get")
-        hint = did_you_mean(address, [STATUS_PREFIX + name for name in names], 0.8)
-        raise ParameterError(f"unknown status value {address!r}{hint}")
-    return find(address).address
-
-
-def near(address: str, parts: int, known: Iterable[str]) -> str:
-    """The reason for an unknown address, with a similar one of those known, if there is one."""
+def unknown(address: str, parts: int, known: Collection[str]) -> str:
+    """The reason for an unknown address, with one of those known that it may be meant for."""
+    address = address[: limits.PATTERN]
     if not address.startswith(PREFIX + "/"):
-        bare = address[: limits.PATTERN]
-        least = (len(PREFIX) + 0.8 * len(bare)) / (len(PREFIX) + len(bare))  # of `bare` 0.8
-        hint = near_address(PREFIX + bare, [PREFIX + one for one in known], least)
+        hint = near_address(address, known) or near_address(PREFIX + address, known, prefix=PREFIX)
         return f"unknown address (all but learned ones begin with {PREFIX}/){hint}"
-    group, own = part_addresses.split_group(address.removeprefix(PREFIX)[: limits.PATTERN])
+    group, own = part_addresses.split_group(address.removeprefix(PREFIX))
     try:
         part_addresses.check_part(group, parts)
-        part_addresses.check_own(group, own)
-        if own.startswith(STATUS_PREFIX):
-            parameter_of(own)
-    except YehuError as error:
+    except ParameterError as error:
         return str(error)
-    if own in ROOM_GUESSES:
-        return f"unknown address; a room is a preset: {PREFIX}/preset/load hall"
-    of_group = [PREFIX + one for one in known if part_addresses.split_group(one)[0] == group]
-    return f"unknown address{near_address(address, of_group, 0.75, prefix=PREFIX + group)}"
+    if group and PREFIX + own in known and not own.startswith(part_addresses.PART):
+        return f"{own} is one for all parts: {PREFIX}{own}"
+    if own.startswith(STATUS_PREFIX):
+        known = [PREFIX + one for one in readable(parts)]
+        if address in known:
+            return f"the status cannot be set; ask for it by {PREFIX}/get"
+    if own.startswith(part_addresses.PART):
+        hint = f"; a part is a number: {PREFIX}{part_addresses.group_of(0)}/..."
+    elif own in ROOM_GUESSES:
+        hint = f"; a room is a preset: {PREFIX}/preset/load hall"
+    else:
+        of_group = [each for each in known if _group(each) == group]
+        hint = near_address(address, of_group, prefix=PREFIX + group)
+    return f"unknown address{hint}"
 
 
-def fitting(pattern: str, addresses: Iterable[str], prefix: str = "") -> list[str]:
+def _group(address: str) -> str:
+    return part_addresses.split_group(address.removeprefix(PREFIX))[0]
+
+
+def fitting(pattern: str, addresses: Iterable[str]) -> list[str]:
     """The addresses that a pattern matches; raises RefusedError if it is wrong or matches none."""
     if len(pattern) > limits.PATTERN:
         raise RefusedError("the pattern is too long")
     literal = re.split(r"[*?\[{]", pattern, maxsplit=1)[0]  # which most lack
     matches(pattern, "")  # raises where it is wrong, whatever there is
-    found = [
-        address
-        for address in addresses
-        if (prefix + address).startswith(literal) and matches(pattern, prefix + address)
-    ]
+    found = [each for each in addresses if each.startswith(literal) and matches(pattern, each)]
     if not found:
-        raise RefusedError("the pattern matches no address")
+        raise RefusedError("the pattern matches no address; * ends at a /")
     return found

@@ -62,7 +62,7 @@ def _content(data: memoryview, due_s: float | None, depth: int) -> Iterator[Mess
     elif bytes(data[:1]) == b"/":
         yield _message(data, due_s)
     else:
-        raise PacketError("neither a message nor a bundle")
+        raise PacketError("an address begins with /")
 
 
 def _bundle(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message | None]:

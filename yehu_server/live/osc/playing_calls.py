@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from yehu_server.errors import RefusedError
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.osc.call import MIDI_NOTE, Argument, Request, like, osc_call
+from yehu_server.live.osc.call import MIDI_NOTE, Argument, Request, like, osc_call, port_of
 from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.packets import pack
 from yehu_server.live.osc.peers import Peer
@@ -84,7 +84,7 @@ class PartCalls(GroupCalls):
 
     # -- playing -----------------------------------------------------------------------------
 
-    @osc_call("/note", "Begins a note; velocity 0 ends it.", NOTE, VELOCITY)
+    @osc_call("/note", "Begins a note; velocity 0 ends it.", NOTE, VELOCITY, takes_patterns=True)
     def _note(self, call: Request) -> None:
         note, velocity = call.numbers(2)
         if velocity == 0.0:
@@ -109,11 +109,16 @@ class PartCalls(GroupCalls):
             told.add((peer, address))
             self._clients.send(peer, pack(f"{PREFIX}/moved", address, what))
 
-    @osc_call("/note/off", "Ends a note.", NOTE)
+    @osc_call("/note/off", "Ends a note.", NOTE, takes_patterns=True)
     def _note_off(self, call: Request) -> None:
         self._player.key_off(call.numbers(1, 2)[0], frame=call.frame)
 
-    @osc_call("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", NOTE)
+    @osc_call(
+        "/pitch",
+        "Slides the finger to a pitch: the sounding note's, or the next.",
+        NOTE,
+        takes_patterns=True,
+    )
     def _pitch(self, call: Request) -> None:
         pitch = within_midi("pitch", call.numbers(1)[0])
         accepted = self._player.slide(pitch, frame=call.frame)
@@ -125,23 +130,37 @@ class PartCalls(GroupCalls):
         "Draws the bow by hand; no speed and no force lifts it.",
         like("/bow/speed", "speed"),
         like("/bow/force", "force"),
+        takes_patterns=True,
     )
     def _bow(self, call: Request) -> None:
         speed, force = call.numbers(2)
         self._player.draw(speed, force, frame=call.frame)
         self._echo(call.peer, ["/bow/speed", "/bow/force"])
 
-    @osc_call("/bend", "Slides the finger away from the note.", like("/playing/bend", "semitones"))
+    @osc_call(
+        "/bend",
+        "Slides the finger away from the note.",
+        like("/playing/bend", "semitones"),
+        takes_patterns=True,
+    )
     def _bend(self, call: Request) -> None:
         self.set(call, "/playing/bend")
 
     @osc_call(
-        "/press", "How hard the finger presses the string.", like("/playing/press", "newtons")
+        "/press",
+        "How hard the finger presses the string.",
+        like("/playing/press", "newtons"),
+        takes_patterns=True,
     )
     def _press(self, call: Request) -> None:
         self.set(call, "/playing/press")
 
-    @osc_call("/articulation", "Chooses what both hands do in the next notes.", ARTICULATION)
+    @osc_call(
+        "/articulation",
+        "Chooses what both hands do in the next notes.",
+        ARTICULATION,
+        takes_patterns=True,
+    )
     def _articulation(self, call: Request) -> None:
         if len(call.arguments) == 1 and isinstance(call.arguments[0], int | float):
             raise RefusedError(
@@ -154,6 +173,7 @@ class PartCalls(GroupCalls):
     @osc_call(
         "/release",
         "Gives the bow and fingers that you moved directly back to the player (no time).",
+        takes_patterns=True,
     )
     def _release(self, call: Request) -> None:
         if call.is_let_go:
@@ -212,23 +232,15 @@ class PartCalls(GroupCalls):
             )
         if seconds < 0.0:
             raise RefusedError(f"{seconds:g} s is less than nothing")
-        peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer
         if seconds == 0.0:
-            self._clients.unsubscribe(peer)
-            peer.send(pack(f"{self._prefix}/unsubscribed"))
+            self._end_subscriptions(call.peer, numbers[1:])
             return
+        peer = call.peer.at(port_of(numbers[1])) if len(numbers) == 2 else call.peer
         if not self._clients.subscribe(peer, seconds, form, self._group, sender=call.peer):
             raise RefusedError("there are too many subscribers")
-        peer.send(pack(f"{self._prefix}/subscribed", seconds))
+        self._send(call.peer, "/subscribed", seconds)
 
 
 def within_an_hour(seconds: float) -> float:
     """The nearest length of a subscription (s) to one that is asked for."""
     return min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
-
-
-def port_of(number: float) -> int:
-    """The port of an argument; raises RefusedError where it is none."""
-    if not 0 < number <= 65535 or number != int(number):
-        raise RefusedError(f"{number:g} is not a port")
-    return int(number)

@@ -2,14 +2,13 @@
 
 from functools import cache
 
+from yehu_server.errors import RefusedError
 from yehu_server.live.osc.call import ADDRESS, NAME, Request, osc_call
 from yehu_server.live.osc.change_publisher import own_address, topic_of
 from yehu_server.live.osc.context import GroupCalls
-from yehu_server.live.osc.osc_addresses import fitting, is_pattern, parameter_of, readable
-from yehu_server.live.osc.packets import answer, pack
-from yehu_server.live.osc.playing_calls import port_of
-from yehu_server.live.part_addresses import check_own, check_part, split_group
-from yehu_server.params.table import PREFIX, UNIT, read
+from yehu_server.live.osc.osc_addresses import fitting, is_pattern, readable, unknown
+from yehu_server.live.osc.packets import answer
+from yehu_server.params.table import PREFIX, read
 
 
 class ServerCalls(GroupCalls):
@@ -19,34 +18,25 @@ class ServerCalls(GroupCalls):
         "/get", "Sends the value of a parameter, or a status value.", ADDRESS, is_for_all=True
     )
     def _get(self, call: Request) -> None:
-        wanted = call.word().removeprefix(PREFIX)
-        known = readable(len(self._context.players))
+        wanted, parts = call.word().removeprefix(PREFIX), len(self._context.players)
+        known = readable(parts)
         if is_pattern(wanted):
             addresses = fitting(wanted, known)
         elif wanted in known:
             addresses = [wanted]
+        elif PREFIX + wanted in self._context.addresses:
+            raise RefusedError(f"{PREFIX}{wanted} has no value")
         else:
-            addresses = [self._found(wanted)]
+            raise RefusedError(unknown(PREFIX + wanted, parts, [PREFIX + one for one in known]))
         call.check_peer()
         read_topic = cache(self._clients.read)
         for address in addresses:
             values = read_topic(topic_of(address))
             self._send(call.peer, address, read(values, own_address(address)))
 
-    def _found(self, address: str) -> str:
-        """The address of a parameter; raises ParameterError, with a similar one if there is one."""
-        group, own = split_group(address)
-        check_part(group, len(self._context.players))
-        check_own(group, own)
-        form = UNIT if own.endswith(UNIT) else ""
-        return group + parameter_of(own.removesuffix(UNIT)) + form
-
     @osc_call("/unsubscribe", "Ends all subscriptions.", is_for_all=True)
     def _unsubscribe(self, call: Request) -> None:
-        numbers = call.numbers(0, 1)
-        peer = call.peer.at(port_of(numbers[0])) if numbers else call.peer
-        self._clients.unsubscribe(peer)
-        peer.send(pack(f"{self._prefix}/unsubscribed"))
+        self._end_subscriptions(call.peer, call.numbers(0, 1))
 
     @osc_call("/record/start", "Records into the recordings folder.", NAME, is_for_all=True)
     def _record_start(self, call: Request) -> None:

@@ -151,14 +151,15 @@ export function download(blob, name) {
  * @param {string} on
  * @param {(isOn: boolean) => void | Promise<void>} change called once it is done with the change before;
  *   `isOn` shows presses meanwhile
+ * @param {Record<string, string>} [values] of its texts
  */
-export function toggle(off, on, change) {
+export function toggle(off, on, change, values = {}) {
   let isOn = false;
   let isDone = false; // what was called for last
   let isBusy = false;
   const show = () => {
     button.setAttribute("aria-pressed", String(isOn));
-    button.textContent = translate(isOn ? on : off);
+    button.textContent = translate(isOn ? on : off, values);
   };
   /** @param {boolean} isOnNow without a call */
   const set = (isOnNow) => {

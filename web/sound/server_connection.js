@@ -64,7 +64,7 @@ export class ServerConnection extends EventTarget {
     this.status = { ...UNKNOWN };
     this.heardAt = 0; // ms, of the last status
     this.isOpen = false;
-    this.wanted = { snapshots: false, sounds: false };
+    this.wanted = { snapshots: true, sounds: false }; // what is set is shown before anything sounds
     /** The latest snapshot, while snapshots come. @type {Float64Array | null} */
     this.seen = null;
     this.wait = AGAIN_MS;

@@ -24,7 +24,10 @@ export function showHeader({ instrument, gallery }) {
   };
   start.addEventListener("click", () => {
     if (instrument.sound?.status.running) instrument.silence();
-    else instrument.start();
+    else {
+      instrument.start();
+      start.dispatchEvent(new Event("begin")); // now: a click's other listeners are called once it may sound
+    }
     update();
   });
   onLanguage(update);

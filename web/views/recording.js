@@ -12,6 +12,7 @@ import {
   note,
   section,
   toggle,
+  whileShown,
   words,
 } from "../elements.js";
 import { CaptureWriter, Replayer, fileOf, notesAndGestures, readCapture } from "../capture.js";
@@ -39,18 +40,25 @@ function fileName(ending) {
 }
 
 /**
- * A button that keeps something of what sounds, until it is pressed again or another sound takes its place.
+ * A button that keeps something of what sounds, until it is pressed again or another sound takes its place; and for how long.
  * @template T
  * @param {Instrument} instrument
  * @param {string} off key of its text
+ * @param {string} on
  * @param {(sound: Instrument["sound"]) => {start: () => void, stop: () => T} | null | undefined} choose
  * @param {(kept: Awaited<T> | null) => unknown} report null: it begins
  */
-function keeping(instrument, off, choose, report) {
+function keeping(instrument, off, on, choose, report) {
   /** @type {ReturnType<typeof choose>} */
   let keeper;
-  const one = toggle(off, "keep.stop", async (isOn) => {
+  let begun = 0;
+  const time = make("output", { class: "soft" });
+  const tell = () => {
+    if (begun) time.textContent = clock((performance.now() - begun) / 1000);
+  };
+  const one = toggle(off, on, async (isOn) => {
     if (!isOn) {
+      begun = 0;
       if (keeper) await report(await keeper.stop());
       return;
     }
@@ -59,27 +67,23 @@ function keeping(instrument, off, choose, report) {
     if (!keeper || !one.isOn) return one.set(false);
     report(null);
     keeper.start();
+    begun = performance.now();
+    tell();
   });
   instrument.addEventListener("way", () => one.isOn && one.press());
-  return one.button;
+  whileShown(time, tell);
+  return { button: one.button, time };
 }
 
 /** @param {Instrument} instrument */
 function recording(instrument) {
-  const time = make("output", { class: "soft" });
-  let begun = 0;
-  const button = keeping(
+  const { button, time } = keeping(
     instrument,
     "keep.record",
+    "keep.record.stop",
     (sound) => sound?.record,
-    (blob) => {
-      begun = blob ? 0 : performance.now();
-      if (blob) download(blob, fileName("wav"));
-    },
+    (blob) => blob && download(blob, fileName("wav")),
   );
-  setInterval(() => {
-    if (begun && !document.hidden) time.textContent = clock((performance.now() - begun) / 1000);
-  }, 250);
   const lack = judge(instrument, button, (sound) => !sound || Boolean(sound.record));
   const row = make("div", { class: "row" }, [button, time]);
   return section("keep.sound", note(words("keep.sound.about")), row, lack);
@@ -89,9 +93,10 @@ function recording(instrument) {
 function performances({ instrument, hands }) {
   const word = make("p", { class: "soft", role: "status" });
   const offer = make("div", { class: "row" });
-  const keep = keeping(
+  const { button: keep, time } = keeping(
     instrument,
     "keep.begin",
+    "keep.begin.stop",
     (sound) => sound?.keep && new CaptureWriter(instrument.player, sound),
     async (kept) => {
       offer.replaceChildren();
@@ -181,48 +186,50 @@ function performances({ instrument, hands }) {
   hands.addEventListener("play", () => replayer?.yield());
   const heard = invite(instrument, play);
   const lack = judge(instrument, keep, (sound) => !sound || Boolean(sound.keep));
-  const row = make("div", { class: "row" }, [keep, load.button, input]);
+  const row = make("div", { class: "row" }, [keep, time, load.button, input]);
   const about = note(words("keep.performance.about"));
   return { element: section("keep.performance", about, row, lack, offer, word), heard };
 }
 
 /**
- * Invite to listen to what the address of the page brings.
+ * Invite to listen to what the address of the page brings, as often as one likes, until it is closed.
  * @param {Instrument} instrument
  * @param {(performance: import('../capture.js').Performance) => {left: string, replayer: Replayer}} play
  */
 async function invite(instrument, play) {
   const invitation = find("invite", HTMLElement);
+  const bar = find("brought", HTMLElement);
   try {
     const brought = await readLink(location.hash);
     if (brought === null) return;
     const { commands, rate } = brought;
-    const seconds = Math.ceil((commands.at(-1)?.frame ?? 0) / rate);
-    const text = () => translate("keep.listen", { time: clock(seconds) });
-    const isAsked = await new Promise((resolve) => {
-      const listen = () => {
-        button.remove();
-        resolve(true);
-        instrument.start(); // while the touch counts
-      };
-      const button = makeButton(text, listen, { class: "main", id: "listen" });
-      const begin = () => {
-        button.remove();
-        resolve(false);
-      };
-      invitation.before(button);
-      invitation.hidden = true;
-      instrument.addEventListener("start", begin, { once: true });
-    });
-    await instrument.start();
-    if (!isAsked || !instrument.sound) return;
-    const { left, replayer } = play(brought);
-    // Whoever opens a link has no panel open that would say it.
-    invitation.textContent = left;
-    invitation.className = "left-out";
-    invitation.hidden = left === "";
-    await new Promise((resolve) => replayer.addEventListener("end", resolve, { once: true }));
+    const time = clock(Math.ceil((commands.at(-1)?.frame ?? 0) / rate));
+    const said = make("p", { role: "status" }, [words("keep.brought")]);
+    /** @type {Replayer | null} */
+    let replayer = null;
+    const change = async (/** @type {boolean} */ isOn) => {
+      if (!isOn) return replayer?.stop();
+      await instrument.start(); // while the touch counts
+      if (!instrument.sound) return listen.set(false);
+      const played = play(brought);
+      replayer = played.replayer;
+      if (played.left) said.textContent = played.left;
+      replayer.addEventListener("end", () => listen.set(false), { once: true });
+    };
+    const listen = toggle("keep.listen", "keep.stop", change, { time });
+    listen.button.className = "main";
+    listen.button.id = "listen";
+    bar.append(said, listen.button);
+    bar.hidden = false;
     invitation.hidden = true;
+    const begin = () => !bar.hidden && !listen.isOn && listen.press();
+    find("start", HTMLElement).addEventListener("begin", begin);
+    await new Promise((resolve) => {
+      const close = () => resolve(true);
+      bar.append(makeButton(words("guide.close"), close, { class: "quiet" }));
+    });
+    if (listen.isOn) listen.press();
+    bar.hidden = true;
   } catch {
     invitation.textContent = translate("keep.broken");
   }

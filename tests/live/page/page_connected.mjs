@@ -91,7 +91,9 @@ async function isHeardSteadily(page) {
 
 export default async function (browser, url, { reach }) {
   await browser.addInitScript(keepAnalysers);
+  await reach("before");
   const { page, errors } = await open(browser, url);
+  await page.locator("#ways output").getByText("33").waitFor(); // the server's vibrato, before a touch
   const touch = await fingersOf(page);
   const found = {};
   const status = () => page.getAttribute("#status", "data-state");

@@ -98,21 +98,43 @@ export default async function (browser, url) {
   await touch("touchEnd", []);
   await page.waitForTimeout(100);
   found.played = await commands(page);
-  await page.locator("#panel-keep button[aria-pressed=true]").click();
+  await page.getByRole("button", { name: "Record", exact: true }).click();
+  const on = page.locator("#panel-keep .row:has([aria-pressed=true])");
+  await on.getByText(/0:0/).nth(1).waitFor();
+  found.keeping = await on.allInnerTexts();
+  await page.getByRole("button", { name: "Stop recording" }).click();
+  await page.getByRole("button", { name: "Stop keeping" }).click();
   const link = await page.getByLabel("Link that plays it").inputValue();
-  found.link = link;
   await page.evaluate(() => localStorage.clear());
   await page.close();
 
-  // A newcomer who opens the link hears the tune first.
+  // A newcomer who opens the link hears the tune first, by either button; again; and is then taught.
   const { page: friend, errors: others } = await open(browser, link);
-  found.guided = await friend.locator("#guide").isVisible();
-  await friend.click("#listen");
+  const listen = friend.locator("#listen");
+  const guided = () => friend.locator("#guide").isVisible();
+  found.link = {
+    length: link.length,
+    offered: [await listen.textContent()],
+    guided: [await guided()],
+  };
+  await friend.click("#start");
   await friend.waitForFunction(() => globalThis.imitation);
   await requested(friend, "END", found.played.filter(([kind]) => kind === "END").length);
+  found.link.offered.push(await listen.textContent());
+  await listen.getByText("Listen").waitFor();
   found.replayed = await commands(friend);
   found.heldAfter = await held(friend);
+  await friend.keyboard.press("KeyX");
+  found.link.guided.push(await guided());
+  await commands(friend);
+  await listen.click();
+  await requested(friend, "BEGIN");
+  await listen.click();
+  found.link.offered.push(await listen.textContent());
+  found.link.heldAfterStop = await held(friend);
+  await friend.locator("#brought").getByText("Close").click();
   await friend.waitForSelector("#guide:not([hidden])");
+  found.link.offered.push(await listen.isVisible());
   await friend.close();
 
   // What a link would hold is left out, and that is said where its reader looks.
@@ -128,10 +150,9 @@ export default async function (browser, url) {
   await holding.page.close();
   const { page: reader } = await open(browser, other);
   await reader.click("#listen");
-  const notice = reader.locator("#invite.left-out");
+  const notice = reader.locator("#brought p").getByText("settings");
   await notice.waitFor();
   found.leftOut = await notice.textContent();
-  await notice.waitFor({ state: "hidden" });
   await reader.close();
 
   // Somebody who touches the string while it plays goes on from there.
@@ -145,6 +166,7 @@ export default async function (browser, url) {
   await hand("touchStart", [{ x: x + 0.8 * width, y: y + height / 2, id: 1 }]);
   await third.waitForTimeout(2500); // longer than what was kept
   found.taken = { held: await held(third), commands: await commands(third) };
+  found.taken.offered = await third.locator("#listen").textContent();
   await hand("touchEnd", []);
   await third.waitForTimeout(100);
   found.let = await held(third);

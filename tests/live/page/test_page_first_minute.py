@@ -1,5 +1,6 @@
 """A newcomer is shown three gestures, can send what was played as a link, and learns a tune."""
 
+import re
 from typing import Any
 
 import pytest
@@ -44,7 +45,25 @@ def test_a_key_brings_help_and_takes_it_away(found) -> None:
     assert found["put"] == []
 
 
-def test_what_a_link_leaves_out_is_said_over_the_strings_while_it_plays(found):
+def test_a_link_can_be_heard_by_start_too_and_again_until_it_is_closed_and_the_guide_waits(found):
+    link = found["link"]
+    *offered, is_offered = link["offered"]
+    listen = offered[0]
+    assert listen.startswith("Listen (0:0")
+    assert offered == [listen, "Stop", listen]
+    assert not is_offered
+    assert link["guided"] == [False, False]
+    assert link["heldAfterStop"] == 0
+    assert found["taken"]["offered"] == listen  # whoever plays meanwhile can still hear it
+
+
+def test_what_is_kept_and_what_is_recorded_have_a_stop_and_a_time_each(found) -> None:
+    kept, recorded = (re.sub(r"0:0\d", "0:0", row).split() for row in found["keeping"])
+    assert kept[:3] == ["Stop", "keeping", "0:0"]
+    assert recorded == ["Stop", "recording", "0:0"]
+
+
+def test_what_a_link_leaves_out_is_said_above_the_strings(found):
     line = "Notes and gestures are played, without these settings of it: "
     assert found["leftOut"] == f"{line}Vibrato (How the player plays)"
 
@@ -61,8 +80,7 @@ def test_a_link_asks_for_what_was_played_until_one_touches_the_string(found) -> 
     late = [other[4] - one[4] for one, other in zip(played, replayed, strict=True)]
     assert max(late) - min(late) < 200  # frames, of 48000 a second
     assert found["heldAfter"] == 0
-    assert not found["guided"]
-    assert len(found["link"]) < 2000
+    assert found["link"]["length"] < 2000
     assert found["taken"]["held"] == 1  # the own finger
     assert found["let"] == 0
 

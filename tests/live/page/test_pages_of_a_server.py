@@ -11,6 +11,7 @@ pytestmark = in_browser
 slow = pytest.mark.slow  # they hear a server in real time
 
 PRESSURE, BOW_POSITION, ROOM_SIZE = "/playing/pressure", "/playing/bow_position", "/room/size"
+VIBRATO = "/playing/vibrato"
 
 
 class Stage:
@@ -22,7 +23,9 @@ class Stage:
 
     def reach(self, step: str) -> None:
         player = self.server.player
-        if step in ("holds", "plays here", "holds again"):
+        if step == "before":
+            player.set(VIBRATO, 33.0, frame=player.frame_of())
+        elif step in ("holds", "plays here", "holds again"):
             until(lambda: player.pitch is not None, step)
         elif step in ("let go", "let go here"):
             until(lambda: player.pitch is None, step)

@@ -94,7 +94,7 @@ def test_what_is_named_wrongly_is_answered_with_what_there_is(command, tmp_path)
             "flautando: not a room (it sets /bow/noise; there are: chamber, courtyard, ",
         ),
         (("render", score), "it is text; scores in text are named .jianpu, .abc or .musicxml"),
-        (("build", "vst3"), "'vst3' is none of wasm, library, tables, plugin"),
+        (("build", "vst3"), "'vst3' is none of wasm, library, plugin, tables"),
     ):
         code, _, err = command(*words, "-o", out)
         assert (code, said in err) == (2, True), err

@@ -13,45 +13,50 @@ tuning and presets for pages and C programs, as numbers; docs/ahead.md describes
 """
 
 import argparse
-from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_folder, add_options
+from yehu_server.cli.arguments import (
+    add_action,
+    add_actions,
+    add_command,
+    add_folder,
+    add_options,
+)
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.playing_options import add_tables, table_options_of
 from yehu_server.cli.terminal import print_result
-from yehu_server.errors import ParameterError
 from yehu_server.plugin.targets import ALL, NAMES, usual
 from yehu_server.util.files import write_bytes
 
 
 def add_to(commands: Any) -> None:
     """Add the command to the parser."""
-    parser = add_command(commands, "build", __doc__, run)
-    parser.add_argument(
-        "what",
-        choices=("wasm", "library"),
-        metavar="{wasm,library,plugin,tables}",
-        help="wasm: a WebAssembly module, for pages; library: a shared library and its header; "
-        "plugin: a plug-in for music programs; tables: a mapping, a tuning and presets as numbers "
-        "(the last two have options of their own: build plugin --help)",
-    )
-    add_folder(parser)
+    actions = add_actions(add_command(commands, "build", __doc__))
+    wasm = add_action(actions, "wasm", _ahead, "make a WebAssembly module, for pages")
+    library = add_action(actions, "library", _ahead, "make a shared library and its header")
+    for what in (wasm, library):
+        add_folder(what)
+        rates = "--rate HZ: sample rates that it can play at (default: 44100 48000)"
+        add_options(what, rates, rate={"nargs": "+", "type": positive})
     add_options(
-        parser,
+        library,
         """
-        --rate HZ: sample rates that it can play at (default: 44100 48000)
-        --level NAME: level of processors of a library: x86-64-v3 (with AVX2) or x86-64-v2; aarch64
-            (default: the lowest of this kind of machine)
+        --level NAME: level of processors: x86-64-v3 (with AVX2) or x86-64-v2; aarch64 (default: the
+            lowest of this kind of machine)
         """,
-        rate={"nargs": "+", "type": positive},
         level={},
     )
-    tables = parser.add_word(
-        "tables",
-        write_tables,
-        "write a mapping, tuning and presets as numbers, for yehu_use_tables",
+    wasm.set_defaults(what="wasm", level=None)
+    library.set_defaults(what="library")
+    plugin = add_action(actions, "plugin", _plugin, "make a plug-in for music programs")
+    add_folder(plugin)
+    add_options(
+        plugin,
+        "--target: the system it is for (default: this machine's); all: a folder for each",
+        target={"choices": (*NAMES, ALL)},
     )
+    text = "write a mapping, tuning and presets as numbers, for yehu_use_tables"
+    tables = add_action(actions, "tables", _tables, text)
     add_tables(tables)
     add_options(
         tables,
@@ -61,17 +66,9 @@ def add_to(commands: Any) -> None:
         """,
         output={"required": True, "type": target},
     )
-    plugin = parser.add_word("plugin", build_plugin, "make a plug-in for music programs")
-    add_folder(plugin)
-    add_options(
-        plugin,
-        "--target: the system it is for (default: this machine's); all: a folder for each",
-        target={"choices": (*NAMES, ALL)},
-    )
 
 
-def build_plugin(arguments: argparse.Namespace) -> int:
-    """Build the plug-in; return the exit code. Raises YehuError, as where a compiler is missing."""
+def _plugin(arguments: argparse.Namespace) -> int:
     from yehu_server.plugin.build import build
 
     for path in build(arguments.output, arguments.target or usual()):
@@ -79,7 +76,7 @@ def build_plugin(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def write_tables(arguments: argparse.Namespace) -> int:
+def _tables(arguments: argparse.Namespace) -> int:
     """Write tables to a file, and the numbers of named controls; return the exit code."""
     from yehu_server.playing.tables import Controls
 
@@ -92,14 +89,10 @@ def write_tables(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Run the command; return its exit code."""
+def _ahead(arguments: argparse.Namespace) -> int:
     from yehu_server.ahead.build import RATES, build
 
-    folder: Path = arguments.output
-    if arguments.what == "wasm" and arguments.level:
-        raise ParameterError("--level is for libraries: a page has no processor of its own")
     rates, level = arguments.rate or RATES, arguments.level
-    for path in build(arguments.what, folder, rates=rates, level=level):
+    for path in build(arguments.what, arguments.output, rates=rates, level=level):
         print_result(str(path))
     return 0

@@ -5,11 +5,13 @@ the time that its ends take is regained in its middle. Arches of tempo: [Friberg
 [FribergSundberg]. Amounts are small, by ear.
 """
 
-import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from operator import attrgetter
+
+import numpy as np
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.scores.score import Score, ScoreNote, phrases_of
@@ -44,8 +46,8 @@ def _melodic(score: Score) -> list[ScoreNote]:
 
 def is_in_time(notes: Sequence[ScoreNote]) -> bool:
     """Whether notes were written by a machine: on a grid, and in a tempo that hardly changes."""
-    places = [note.beat * GRID for note in notes if not math.isnan(note.beat)]
-    near = sum(abs(place - round(place)) < NEAR * GRID for place in places)
+    places = GRID * np.array([*map(attrgetter("beat"), notes)])
+    near = np.count_nonzero(np.abs(places - np.rint(places)) < NEAR * GRID)
     if not notes or near < IN_TIME * len(notes):
         return False
     tempi = _tempi(notes)

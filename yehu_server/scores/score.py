@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from operator import itemgetter
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
@@ -250,18 +251,24 @@ def without_notes(score: Score, notes: Collection[ScoreNote]) -> Score:
     return replace(score, events=tuple(events))
 
 
+def distinct(messages: Iterable[Any]) -> list[Any]:
+    """Messages, each object once; of a file, those that are equal are one."""
+    return list({id(message): message for message in messages}.values())
+
+
 def says_mpe(score: Score) -> bool:
     """Whether a score of MIDI says that its channels are notes of one player (MPE, RPN 6)."""
     return any(
-        event.message.type == "control_change"
-        and (event.message.control, event.message.value) == (RPN_FINE, MPE_CONFIGURATION)
-        for event in score.events
+        message.type == "control_change"
+        and (message.control, message.value) == (RPN_FINE, MPE_CONFIGURATION)
+        for message in distinct(map(itemgetter(1), score.events))
     )
 
 
 def seems_mpe(score: Score) -> bool:
     """Whether each of several channels but the first has notes and a pressure, as of MPE."""
-    pressed = {e.message.channel for e in score.events if e.message.type == "aftertouch"}
+    messages = distinct(map(itemgetter(1), score.events))
+    pressed = {message.channel for message in messages if message.type == "aftertouch"}
     played = {note.channel for note in score.notes}
     return len(played) >= MPE_FROM and 0 not in played and played <= pressed
 

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from itertools import pairwise
-from operator import attrgetter, itemgetter
+from operator import itemgetter
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.scores.octaves import NoteSpan, octaves_of
@@ -37,10 +37,11 @@ def melodic_part(
     them, and most of a melody fits `within`. Names and parts are those of all parts: the notes of
     each, in any one unit of time.
     """
-    longest = max(map(_sounds, parts), default=0.0)
+    lasting = [*map(_sounds, parts)]
+    least = LONG_ENOUGH * max(lasting, default=0.0)
     sounding = [at for at, notes in enumerate(parts) if notes]
     may_be = [at for at in sounding if not ACCOMPANIES.search(names[at])]
-    tunes = [at for at in may_be if _is_tune(parts[at], longest, within)]
+    tunes = [at for at in may_be if lasting[at] > least and _is_tune(parts[at], within)]
     named = [at for at in tunes if NAMED.search(names[at])]
     return next(iter([*named, *tunes, *may_be, *sounding]), None)
 
@@ -73,15 +74,16 @@ def take_turns(parts: Sequence[Sequence[NoteSpan]]) -> bool:
 def _sounds(notes: Sequence[NoteSpan]) -> float:
     """For how long there is a note: one of a chord's counts, else chords are the longest part."""
     sounds, until = 0.0, float("-inf")
-    for note in sorted(notes, key=attrgetter("begin")):
-        sounds += max(0.0, note.end - max(note.begin, until))
-        until = max(until, note.end)
+    for begin, end, _ in sorted(notes, key=itemgetter(0)):
+        if end > until:
+            sounds += max(0.0, end - max(begin, until))
+            until = end
     return sounds
 
 
-def _is_tune(notes: Sequence[NoteSpan], longest: float, within: NoteRange) -> bool:
+def _is_tune(notes: Sequence[NoteSpan], within: NoteRange) -> bool:
     pitches = [max(note.pitches) for note in notes if note.pitches]
-    if not pitches or _sounds(notes) <= LONG_ENOUGH * longest:
+    if not pitches:
         return False
     chords = sum(after.begin - note.begin < TOGETHER for note, after in pairwise(notes))
     same = sum(one == other for one, other in pairwise(pitches))

@@ -18,6 +18,7 @@ from operator import itemgetter
 from pathlib import Path
 
 import mido
+import numpy as np
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.errors import ScoreError
@@ -31,6 +32,7 @@ from yehu_server.scores.score import (
     ScorePart,
     check_duration,
     concatenate,
+    distinct,
     errors_name,
     read_score_bytes,
 )
@@ -208,8 +210,8 @@ def _play_together(
     tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
     messages = sorted((placed for track in tracks for placed in track.messages), key=itemgetter(0))
     starts = [track.start_at for track in tracks]  # a message's byte is within its track
-    distinct = [_distinct(track) for track in tracks]
-    kinds = {message.type for found in distinct for message in found}
+    found = [distinct(map(itemgetter(1), track.messages)) for track in tracks]
+    kinds = {message.type for own in found for message in own}
     if "control_change" in kinds:
         messages = without_resting_wheels(messages)
     if not kinds.isdisjoint(MOVES):
@@ -233,8 +235,8 @@ def _play_together(
     tuned, remarks = retuned(events, [(clock.seconds(tick), body) for tick, body in tunings])
     places = {
         (number, message.channel)
-        for number, found in enumerate(distinct, start=first)
-        for message in found
+        for number, own in enumerate(found, start=first)
+        for message in own
         if message.type == "note_on" and message.channel != PERCUSSION_CHANNEL
     }
     names, encoding = named(tracks)
@@ -249,11 +251,6 @@ def _play_together(
         remarks=remarks,
         keys=_keys(tracks, division),
     )
-
-
-def _distinct(track: Track) -> list[mido.Message]:
-    """The messages of a track, each of those that are equal once: they are one object."""
-    return list({id(message): message for _, message, _ in track.messages}.values())
 
 
 def without_resting_wheels(messages: Sequence[Placed]) -> list[Placed]:
@@ -275,15 +272,11 @@ def _events(
     messages: Sequence[Placed], clock: Clock, starts: Sequence[int], first: int
 ) -> tuple[ScoreEvent, ...]:
     """Messages at their times; each is of the track within whose bytes it lies."""
-    ends = [*starts[1:], MAX_BYTES]
-    begin, end, track = 0, 0, 0  # of the bytes of the last message's track, and its number
-    rows = []
+    places = np.fromiter(map(itemgetter(2), messages), np.int64, len(messages))
+    tracks = first + np.maximum(np.searchsorted(starts, places, side="right") - 1, 0)
     times = clock.times(map(itemgetter(0), messages))
-    for (_, message, at), (seconds, beat) in zip(messages, times, strict=True):
-        if not begin <= at < end:
-            number = max(bisect_right(starts, at) - 1, 0)
-            begin, end, track = starts[number], ends[number], first + number
-        rows.append((seconds, message, beat, track))
+    columns = zip(messages, times, tracks.tolist(), strict=True)
+    rows = [(seconds, message, beat, track) for (_, message, _), (seconds, beat), track in columns]
     return tuple(map(partial(tuple.__new__, ScoreEvent), rows))
 
 

@@ -26,7 +26,12 @@ def test_presets_are_listed_with_their_programs(command, own):
     (own / "bad.toml").write_text("version = 9\n")
     code, out, err = command("presets", "list", "--presets", own)
     assert code == 0
-    assert [line.split()[0] for line in out.splitlines()] == sorted([*SHIPPED.names(), "mine"])
+    head, _, rest = out.partition("rooms, with their MIDI programs:\n")
+    first, *sounds = [line.split()[0] for line in head.splitlines()]
+    rooms = [line.split()[0] for line in rest.splitlines()]
+    assert first == "sounds,"
+    assert {"hall", "dry", "chamber", "study", "courtyard"} <= {*rooms}
+    assert sorted([*sounds, *rooms]) == sorted([*SHIPPED.names(), "mine"])
     assert "your own: wild" in out
     assert "bad:1: version: 9 is newer" in err
     rows = json.loads(command("presets", "list", "--json", "--presets", own)[1])

@@ -171,7 +171,29 @@ def test_a_peak_that_the_limiter_lowers_is_said(command, midi, tmp_path):
     assert limited_db(0.7, -3.0) == 0.0
     words = ("render", midi(*notes((0, 0.1, 70, 110))), "-o", tmp_path / "a.wav", "--tail", 0)
     assert "limiter lowered" not in command(*words)[1]
-    assert "limiter lowered the highest peak by" in command(*words, "--gain-db", 24)[1]
+    told = command(*words, "--gain-db", 24)[1]
+    assert "limiter lowered the highest peak by" in told
+    assert "a lower --gain-db keeps it" in told
+
+
+def test_a_part_is_named_and_its_ornaments_are_no_notes(command, midi, tmp_path):
+    target = ("-o", tmp_path / "a.wav", "--tail", 0, "--overwrite")
+    named = (0.0, mido.MetaMessage("track_name", name="Right hand"))
+    assert (
+        "\nRight hand: 1 note\n"
+        in command("render", midi(named, *notes((0, 0.1, 70, 64))), *target)[1]
+    )
+    tune, two = tmp_path / "tune.abc", tmp_path / "two.abc"
+    tune.write_text("X:1\nL:1/16\nK:D\nV:1 nm=A\n{c}d2 ~e2\nV:2 nm=B\nd4\n", "utf-8")
+    two.write_text(tune.read_text("utf-8"), "utf-8")
+    for words, lines in (
+        ((tune,), ["A: 2 notes (5 with ornaments)"]),
+        ((tune, "--part", "A", "--part", "B"), ["A, B: 3 notes (6 with ornaments)"]),
+        ((tune, "--ensemble"), ["A: 2 notes (5 with ornaments), ", "B: 1 note, "]),
+        ((tune, two), ["A: 10 notes"]),
+    ):
+        told = command("render", *words, *target)[1]
+        assert all(f"\n{line}" in told for line in lines), told
 
 
 def test_a_file_whose_expression_stays_at_0_is_said_to_be_silent(command, midi, tmp_path):

@@ -198,7 +198,7 @@ def test_what_is_no_capture_is_refused(tmp_path):
         (b"", "not a capture"),
         (b"{}", "not a capture"),
         (b"[1]", "expected a table"),
-        (b"\xff\xfe", "not a capture"),
+        (b"RIFF\xff\xfe", r"not a capture \(a capture is text, .jsonl\)"),
         (b'{"format": "yehu-server capture", "version": 99}', "version 99"),
     ]:
         path.write_bytes(data)

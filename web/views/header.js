@@ -56,6 +56,7 @@ function showNotice(instrument) {
   let key = "";
   const update = () => {
     notice.hidden = key === "";
+    notice.classList.toggle("soft", key === "header.prepare"); // no fault
     notice.textContent = key && translate(key, { why: String(instrument.error) });
   };
   for (const event of ["prepare", "ready", "lack", "fail"]) {

@@ -257,14 +257,20 @@ function leftOutLine(addresses) {
  * @returns {HTMLElement} which says so
  */
 export function judge(instrument, button, isAble) {
-  const lack = note(words("missing"));
+  const lack = make("p", { class: "soft" });
   const update = () => {
     lack.hidden = isAble(instrument.sound);
-    allow(button, lack.hidden ? undefined : translate("missing"));
+    lack.textContent = lackOf(instrument);
+    allow(button, lack.hidden ? undefined : lack.textContent);
   };
   for (const event of ["start", "way"]) instrument.addEventListener(event, update);
   onLanguage(update);
   return lack;
+}
+
+/** Why the sound cannot do something, and what helps. @param {Instrument} instrument */
+export function lackOf({ sound }) {
+  return translate(sound && !sound.record ? "missing.remote" : "missing");
 }
 
 /** @param {number} seconds */

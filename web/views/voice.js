@@ -6,7 +6,7 @@ import { find, make, makeSwitch, note, section, toggle, words } from "../element
 import { Voice } from "../pictures/voice.js";
 import facts from "../facts.js";
 import { translate } from "../i18n.js";
-import { judge } from "./recording.js";
+import { judge, lackOf } from "./recording.js";
 
 /** @type {[string, number][]} */
 const AS_IT_SINGS = Object.entries(facts.asItSings);
@@ -43,12 +43,12 @@ export function makeVoice({ instrument, gallery, tuned }) {
   async function begin() {
     await instrument.start();
     const voice = instrument.sound?.voice;
-    let lack = voice ? "" : "missing";
-    if (hum.isOn) await voice?.start().catch(() => (lack = "voice.refused")); // the browser asks
+    let lack = voice ? "" : lackOf(instrument);
+    if (hum.isOn) await voice?.start().catch(() => (lack = translate("voice.refused"))); // the browser asks
     if (lack || !hum.isOn || voice !== instrument.sound?.voice) {
       voice?.stop();
       hum.set(false);
-      word.textContent = lack && translate(lack);
+      word.textContent = lack;
       return;
     }
     before = AS_IT_SINGS.map(([address]) => [address, player.value(address)]);

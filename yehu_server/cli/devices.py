@@ -72,14 +72,21 @@ def devices_report(
 
     console = Console(markup=False, emoji=False)
     nothing = f"no audio outputs{_because(problem)}; {ADVICE}"
-    console.print(_audio_table("audio outputs", outputs) if outputs else one_line(nothing))
+    console.print(
+        _audio_table("audio outputs", outputs) if outputs else one_line(nothing),
+        soft_wrap=not outputs,
+    )
     nothing = f"no audio inputs{_because(problem)}"
-    console.print(_audio_table("audio inputs", inputs) if inputs else one_line(nothing))
+    console.print(
+        _audio_table("audio inputs", inputs) if inputs else one_line(nothing), soft_wrap=not inputs
+    )
     table = Table(title=f"MIDI inputs ({midi_api})", title_justify="left")
     table.add_column("name", overflow="fold")
     for name in midi:
         table.add_row(one_line(name))
-    console.print(table if midi else one_line(f"no MIDI inputs{_because(midi_problem)}"))
+    console.print(
+        table if midi else one_line(f"no MIDI inputs{_because(midi_problem)}"), soft_wrap=not midi
+    )
 
 
 def _audio_table(title: str, devices: Sequence[AudioDevice]) -> Any:

@@ -8,6 +8,7 @@ docs/parameters.md describes the values.
 """
 
 import argparse
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,8 @@ from yehu_server.cli.arguments import add_action, add_actions, add_command, add_
 from yehu_server.cli.playing_options import add_presets_folder
 from yehu_server.cli.terminal import check_files, print_json, print_result, warn
 from yehu_server.params.table import find
+
+PLAYER = re.compile("/(playing|bow|finger|vibrato)/")
 
 
 def add_to(commands: Any) -> None:
@@ -49,9 +52,14 @@ def _list(arguments: argparse.Namespace) -> int:
         print_json(rows)
     else:
         width = max((len(preset.name) for preset in found), default=0)
-        for preset in found:
-            mark = "your own: " if presets.is_own(preset.name) else ""
-            print_result(f"{preset.name:{width}}  {preset.program or '-':>3}  {mark}{preset.about}")
+        # Rooms leave the player's values as they are.
+        rooms = [each for each in found if not any(map(PLAYER.match, each.values))]
+        sounds = [each for each in found if each not in rooms]
+        for title, group in (("sounds", sounds), ("rooms", rooms)):
+            print_result(f"{title}, with their MIDI programs:")
+            for each in group:
+                about = f"{'your own: ' * presets.is_own(each.name)}{each.about}"
+                print_result(f"  {each.name:{width}}  {each.program or '-':>3}  {about}")
     for error in errors:
         warn(str(error))
     return 0

@@ -45,8 +45,11 @@ def render_report(target: Path, summary: Summary) -> str:
         f"{channel + 1} ({counted(notes, 'note')})"
         for channel, notes in summary.notes_by_channel.items()
     )
-    if len(summary.parts) > 1 or summary.parts[0].people > 1:
+    only = summary.parts[0]
+    if len(summary.parts) > 1 or only.people > 1:
         lines += map(_part_line, summary.parts)
+    elif only.notes_played and only.heard and not only.heard.startswith("channel "):
+        lines.append(f"{one_line(only.heard)}: {_notes(only)}")
     else:
         plural = "s" if len(summary.notes_by_channel) > 1 else ""
         lines.append(f"MIDI channel{plural} {heard}" if heard else "no notes to play")
@@ -65,7 +68,14 @@ def _part_line(part: PartSummary) -> str:
     side += "" if side == "middle" else ("left" if part.pan < 0.0 else "right")
     place = f"{side}, {part.distance_m:.1f} m"
     name = one_line(part.name) + (f", {part.people} players" if part.people > 1 else "")
-    return f"{name}: {counted(part.notes_played, 'note')}, {place}"
+    return f"{name}: {_notes(part)}, {place}"
+
+
+def _notes(part: PartSummary) -> str:
+    """How many notes a part has, and how many with grace notes and trills."""
+    if 0 < part.notes_written < part.notes_played:
+        return f"{counted(part.notes_written, 'note')} ({part.notes_played} with ornaments)"
+    return counted(part.notes_played, "note")
 
 
 def simulate_report(target: Path, result: Simulation) -> str:

@@ -33,7 +33,9 @@ class PartSummary:
     """What one part played, and from where."""
 
     name: str
+    heard: str  # the names of the score's parts that it plays, as far as they are known
     people: int  # that play it: several in a section
+    notes_written: int  # without small notes and ornaments; 0: not known
     notes_played: int
     notes_out_of_range: int
     notes_by_channel: dict[int, int]
@@ -91,9 +93,9 @@ class Summary:
             f"{lower} of chords are not played": self.lower_notes,
             f"no preset for the programs {programs}: ignored": programs,
             f"channel {channels}: CC 7 or 11 stays at 0: no note is heard": channels,
-            f"the limiter lowered the highest peak by {decibels}; less gain keeps "
-            "it": self.limited_db >= NOTABLE_DB,
-            f"clipped: {clipped}; float samples, or less gain, keep it": clipped,
+            f"the limiter lowered the highest peak by {decibels}; a lower --gain-db "
+            "keeps it": self.limited_db >= NOTABLE_DB,
+            f"clipped: {clipped}; float samples, or a lower --gain-db, keep it": clipped,
             f"{solves} did not converge": self.unconverged_solves,
             f"the state was lost and set to rest: {lost}": self.lost_states,
         }
@@ -182,9 +184,14 @@ def _unheard(one: PartPlayer) -> set[int]:
 
 def _part_summary(one: PartPlayer) -> PartSummary:
     part, player = one.part, one.player
+    channels = {None, *player.notes_by_channel}
+    heard = [each for each in part.score.parts if each.channel in channels]
+    is_known = len(heard) == 1 or None not in {each.channel for each in heard}
     return PartSummary(
         name=part.name,
+        heard=", ".join(each.name for each in heard) if is_known else "",
         people=len(one.instruments),
+        notes_written=sum(each.notes for each in heard),
         notes_played=player.notes_played,
         notes_out_of_range=player.notes_out_of_range,
         notes_by_channel=dict(sorted(player.notes_by_channel.items())),

@@ -71,7 +71,8 @@ def read_capture(path: Path) -> Capture:
     except OSError as error:
         raise ScoreError(f"{path}: {error_reason(error)}") from error
     except ValueError as error:  # no UTF-8, or a NUL in the name
-        raise ScoreError(f"{path}: not a capture ({error})") from error
+        why = "a capture is text, .jsonl" if isinstance(error, UnicodeDecodeError) else error
+        raise ScoreError(f"{path}: not a capture ({why})") from error
     for player in range(len(capture.beginning.players)):
         if np.any(np.diff(rows["command"]["frame"][rows["player"] == player]) < 0):
             raise ScoreError(f"{path}: events are not in order of frames")

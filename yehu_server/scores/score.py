@@ -138,6 +138,7 @@ class ScorePart:
     name: str
     channel: int | None = None
     track: int | None = None
+    notes: int = 0  # as written; 0: not known
 
 
 @dataclass(frozen=True)
@@ -198,6 +199,8 @@ def concatenate(scores: Sequence[Score]) -> Score:
     warnings = (f"{score.name}: {warning}" for score in scores for warning in score.warnings)
     remarks = (f"{score.name}: {remark}" for score in scores for remark in score.remarks)
     parts = scores[0].parts if scores else ()
+    if len(scores) > 1:
+        parts = tuple(replace(part, notes=0) for part in parts)
     metres = {score.metres for score in scores}  # from the beginning of each score
     metre = metres.pop() if len(metres) == 1 else (COMMON_TIME,)
     return Score(tuple(events), start, names, tuple(warnings), metre, parts, tuple(remarks))

@@ -107,6 +107,7 @@ export default async function (browser, url, { reach }) {
   await page.click("#way-there");
   await page.waitForSelector("#status[data-state=on]", { state: "attached" });
   found.there = await status();
+  found.lack = await page.locator("#panel-keep").textContent();
   const board = await page.locator("#fingerboard").boundingBox();
   const finger = { x: board.x + board.width / 2, y: board.y + board.height / 2, id: 1 };
   await touch("touchStart", [finger]);

@@ -55,6 +55,7 @@ def test_a_page_plays_a_server_there_listens_plays_here_and_outlives_it() -> Non
     assert "heard here" in found["early"]["after"]
     assert found["early"]["begun"] == 1
     assert found["there"] == "on"
+    assert found["lack"].count("choose Here under Connect") == 2  # to record, and to keep
     assert found["shown"] == "0.62"  # which others set
     assert "heard here" in found["panel"]
     assert found["listening"] == "on"

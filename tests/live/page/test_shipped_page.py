@@ -117,7 +117,7 @@ def test_no_module_is_taken_from_a_folder_that_others_may_write_to(tmp_path) -> 
 @pytest.mark.slow
 def test_the_page_says_that_the_instrument_is_prepared_or_why_there_is_none(imitated) -> None:
     found = drive("page_loading.mjs", imitated)
-    assert "still preparing" in found["preparing"]
+    assert "Until then you see and hear what others play." in found["preparing"]
     assert found["answers"] == 3
     assert found["ready"] == {"notice": None, "plays": True}
     for said in (found["lacking"], found["lackingInChinese"]):

@@ -78,7 +78,8 @@ class CallContext:
         self.unlogged += 1
         if self._is_new_error(address):
             reason = reason if isinstance(reason, str) else reason()
-            more = f" ({self.unlogged - 1} errors before it not shown)" * (self.unlogged > 1)
+            hidden = self.unlogged - 1
+            more = f" ({hidden} error{'s' * (hidden > 1)} before it not shown)" * (hidden > 0)
             self.log(f"OSC from {peer.host}: {shortened(address)}: {shortened(reason)}{more}")
             self.unlogged = 0
         self.clients.send_error(peer, address, reason)

@@ -69,7 +69,8 @@ def performed(
     for channel, number in zip(CHANNELS, numbers, strict=False):
         part = written.parts[number]
         timed += _Performer(part, channel, clock, left, len(timed), within).events()
-        parts.append(ScorePart(written.names[number], channel, channel + 1))
+        name, count = written.names[number], len(part.notes)
+        parts.append(ScorePart(name, channel, channel + 1, count))
         end = max(end, part.notes[-1].end)
     warnings += [times(mark, count) for mark, count in left.items()]
     timed.sort()  # no two have the same number

@@ -41,7 +41,8 @@ from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.spec import InstrumentSpec
 from yehu_server.core.engine.warming import warm_up
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.audio.output import NULL, Output, OutputOptions
+from yehu_server.live.audio.devices import NULL
+from yehu_server.live.audio.output import Output, OutputOptions
 from yehu_server.system.sockets import prepare, receive
 
 STARTED_WITHIN_S, ENDED_WITHIN_S = 120.0, 60.0

@@ -43,7 +43,8 @@ LOWEST = 62  # the player's notes; hostile ones are lower
 
 def serve(pipe: Any, has_midi: bool) -> None:
     """Serve until asked to stop; answer each request with the notes received and the status."""
-    from yehu_server.live.audio.output import NULL, OutputOptions
+    from yehu_server.live.audio.devices import NULL
+    from yehu_server.live.audio.output import OutputOptions
     from yehu_server.live.midi.ports import MidiOptions
     from yehu_server.live.options import ServeOptions
     from yehu_server.live.server import Server

@@ -89,6 +89,11 @@ def test_what_is_named_wrongly_is_answered_with_what_there_is(command, tmp_path)
         (("render", tune, "--room", "church"), "church: not a room (there are: chamber, "),
         (("render", tune, "--room", "haal"), "); did you mean hall?"),
         (("render", tune, "--preset", "halll"), "); did you mean hall?"),
+        (("render", tune, "--mapping", "wnd"), "); did you mean wind?"),
+        (
+            ("render", tune, "--tuning", "chaozhou-seven"),
+            "; or name a file); did you mean chaozhou-",
+        ),
         (
             ("render", tune, "--room", "flautando"),
             "flautando: not a room (it sets /bow/noise; there are: chamber, courtyard, ",

@@ -93,9 +93,10 @@ def _synonyms(word: str) -> list[str]:
 def did_you_mean(word: object, known: Collection[str], least: float = 0.7) -> str:
     """A hint at the known word that means the same, or is at least as like; empty without one."""
     bare = {each.lstrip("-"): each for each in known}
-    found = [each for each in _synonyms(str(word).lstrip("-")) if each in known]
-    near = found[:1] or [bare[each] for each in _near(str(word).lstrip("-"), bare, least)]
-    return _hint(near)
+    own = str(word).lstrip("-")
+    begun = [each for each in bare if len(own) >= SHORTEST_BEGINNING and each.startswith(own)]
+    same = [each for each in _synonyms(own) if each in known][:1]
+    return _hint(same or [bare[each] for each in _near(own, bare, least) or begun[:1]])
 
 
 def near_address(address: str, known: Collection[str], *, prefix: str = "") -> str:

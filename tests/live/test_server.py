@@ -2,6 +2,7 @@
 
 import contextlib
 import socket
+from functools import partial
 
 import pytest
 from wire import f32
@@ -68,9 +69,16 @@ def test_stopping_while_notes_and_clients_are_there_ends_all(make_live):
 
 
 def test_an_address_in_use_for_oscquery_is_reported_with_others():
-    hint = "in use; play beside it: --osc :9010 --http :9011"
+    hint = "in use; play beside it: --http :9011"
     with socket.create_server((HOST, 0)) as taken, pytest.raises(DeviceError, match=hint):
         listen(OSCQUERY, *taken.getsockname())
+
+
+def test_an_address_of_another_machine_is_refused_with_those_of_this_one():
+    elsewhere = ("192.0.2.1", 9000)
+    for open_one in open_both, partial(listen, OSCQUERY):
+        with pytest.raises(DeviceError, match=r"; this machine has .*127\.0\.0\.1"):
+            open_one(*elsewhere)
 
 
 @pytest.mark.parametrize("kind", [socket.SOCK_DGRAM, socket.SOCK_STREAM])

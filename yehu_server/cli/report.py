@@ -200,7 +200,7 @@ def connect_lines(
     lines = [f"OSC at {format_address(host, port)} (UDP and TCP), such as {PREFIX}/note 67 90"]
     address = ipaddress.ip_address(host)
     if address.is_loopback:
-        hint = f"{command_name()} serve --osc {lan.ip}:{port} --osc-allow {lan.network}"
+        hint = f"add --osc {lan.ip}:{port} --osc-allow {lan.network}"
         lines.append(f"for OSC from other machines of this network: {hint}")
     else:
         where = lan.ip if address.is_unspecified else host

@@ -1,6 +1,7 @@
 """Network addresses: reading and writing them, and which senders are allowed."""
 
 import contextlib
+import errno
 import ipaddress
 import re
 import socket
@@ -8,6 +9,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from yehu_server.errors import ParameterError
+from yehu_server.util.files import error_reason
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = tuple[str, int]
@@ -69,6 +71,18 @@ def lan_address() -> str:
         probe.connect(("192.0.2.1", 9))  # a network reserved for documentation
         return str(probe.getsockname()[0])
     return ANYWHERE  # there is no network
+
+
+def why_not(error: OSError) -> str:
+    """The reason why an address cannot be bound; of one not this machine's, with those that are."""
+    if error.errno != errno.EADDRNOTAVAIL:
+        return error_reason(error)
+    import ifaddr
+
+    own = [
+        str(each.ip) for adapter in ifaddr.get_adapters() for each in adapter.ips if each.is_IPv4
+    ]
+    return f"{error_reason(error)}; this machine has {', '.join(own)}"
 
 
 def lan_interface() -> ipaddress.IPv4Interface:

@@ -267,6 +267,7 @@ def assignment(text: str) -> tuple[str, float]:
         what = f"neither a number nor one of {', '.join(names)}" if names else "not a number"
         hint = did_you_mean(value, names)
         raise ParameterError(f"{param.address}: {value!r} is {what}{hint}") from None
-    if param.clamped(number) != number:
+    accepted = param.clamped(number)
+    if not param.lo <= number <= param.hi:
         raise ParameterError(f"{param.address}: {number:g} is not within {param.range_text}")
-    return param.address, number
+    return param.address, accepted

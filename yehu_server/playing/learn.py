@@ -35,6 +35,15 @@ def own_file(mapping: Mapping) -> Path:
     return user_folder() / own.name if is_shipped else own
 
 
+def current(mapping: Mapping) -> Mapping:
+    """A mapping as its file of learned binds has it now: another server may have changed it."""
+    path = own_file(mapping)
+    if not path.exists():
+        return mapping
+    # `--mpe` is in no file.
+    return replace(with_bases(path, read_mapping_file(path)), mpe=mapping.mpe)
+
+
 def learn(
     mapping: Mapping, target: str, found: LearnedSource, *, soft: bool, only: bool = False
 ) -> tuple[Mapping, Path]:
@@ -193,5 +202,4 @@ def _save(mapping: Mapping, path: Path, text: str) -> Mapping:
     except OSError as error:
         raise MappingError(f"{path.parent}: {error.strerror}") from error
     write_text(path, text)
-    # `--mpe` is in no file.
-    return replace(with_bases(path, read_mapping_file(path)), mpe=mapping.mpe)
+    return current(mapping)

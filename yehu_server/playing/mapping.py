@@ -14,7 +14,7 @@ from pathlib import Path
 from platformdirs import user_config_path
 
 from yehu_server.core.midi.tables import MAX_BINDS, MAX_POINTS
-from yehu_server.errors import MappingError
+from yehu_server.errors import MappingError, did_you_mean
 from yehu_server.playing.bind import Bind, Breakpoints, override_key
 from yehu_server.playing.mapping_file import MAX_BYTES, MappingFile, document_of, read_mapping_file
 from yehu_server.playing.sources import is_address
@@ -188,7 +188,7 @@ def _is_same(one: Path, other: Path) -> bool:
 
 
 def _unknown(name: str, hint: str = "") -> str:
-    known = ", ".join(shipped_mappings())
-    if own := user_mappings():
-        known += f"; yours: {', '.join(MINE + name for name in own)}"
-    return f"no mapping {name!r} (shipped: {known}{hint})"
+    shipped, own = shipped_mappings(), [MINE + each for each in user_mappings()]
+    known = ", ".join(shipped) + (f"; yours: {', '.join(own)}" if own else "")
+    near = did_you_mean(name, [*shipped, *own])
+    return f"no mapping {name!r} (shipped: {known}{hint}){near}"

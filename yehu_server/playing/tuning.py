@@ -16,7 +16,7 @@ from yehu_server.core.midi import tables
 from yehu_server.core.midi.notes import fitted, pitch_of_key
 from yehu_server.core.physics.elementary import log2
 from yehu_server.core.player.note_range import YEHU, NoteRange
-from yehu_server.errors import ParameterError
+from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.util.files import MAX_SETTINGS_BYTES, error_reason, read_text, shipped_folder
 
 
@@ -160,8 +160,9 @@ def _found(path: Path, ending: str) -> Path:
     folder = shipped_folder("tunings")
     shipped = folder / f"{path}{ending}"
     if not shipped.exists():
-        names = ", ".join(sorted(file.stem for file in folder.glob(f"*{ending}")))
-        raise ParameterError(f"no {ending} {str(path)!r} (shipped: {names}; or name a file)")
+        names = sorted(file.stem for file in folder.glob(f"*{ending}"))
+        there = f"(shipped: {', '.join(names)}; or name a file){did_you_mean(path, names)}"
+        raise ParameterError(f"no {ending} {str(path)!r} {there}")
     return shipped
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from yehu_server.errors import ParameterError
+from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.plot.axes import ABOVE, axes_of, figure_of
 from yehu_server.simulation.labels import label_of
 
@@ -74,7 +74,8 @@ def signals(
     known = [name for name, values in arrays.items() if len(values) == frames and name != "time"]
     for name in shown:
         if name not in known:
-            raise ParameterError(f"there is no signal {name!r} (there are: {', '.join(known)})")
+            there = f"(there are: {', '.join(known)}){did_you_mean(name, known)}"
+            raise ParameterError(f"there is no signal {name!r} {there}")
     figure = figure_of(figure, WIDTH, HEIGHT * len(shown) + 0.5)
     time = arrays["time"]
     part = (time >= start) & (time <= (time[-1] if end is None else end))

@@ -98,6 +98,7 @@ def test_words_that_fit_none_or_several_are_refused_with_the_names_that_there_ar
         ([CARDS], "JACK", r"no audio output matches 'JACK'"),
         ([], None, "there is no audio output"),
         ([], "hifi", "there are: none"),
+        ([], "nulll", r"\); did you mean null\?"),
     ]:
         with pytest.raises(DeviceError, match=said):
             choose(there(*lists), wanted)

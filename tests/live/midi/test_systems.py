@@ -221,17 +221,36 @@ def test_alsa_gives_14_bit_controllers_as_messages_no_system_exclusive_and_goes_
     monkeypatch.delitem(sys.modules, "yehu_server.live.midi.alsa_system")
 
 
-def test_over_jack_an_empty_message_is_no_message():
+@pytest.fixture
+def jack_system():
+    """A client of JACK that is connected to no server."""
     try:
         from yehu_server.live.midi.jack_system import System
     except (ImportError, OSError):
         pytest.skip("there is no JACK library")
+    return object.__new__(System)
+
+
+def test_over_jack_an_empty_message_is_no_message(jack_system):
     heard = Heard()
     port = SimpleNamespace(incoming_midi_events=lambda: [(0, b""), (5, b"\x90\x45\x50")])
-    system = object.__new__(System)
-    system._open = ((port, heard.receive),)
-    system._process(64)
+    jack_system._open = ((port, heard.receive),)
+    jack_system._process(64)
     assert heard.messages == [[0x90, 0x45, 0x50]]
+
+
+def test_over_jack_what_others_connect_to_a_port_of_ours_is_not_heard_twice(jack_system):
+    keys, knobs = SimpleNamespace(name="keys"), SimpleNamespace(name="knobs")
+    own = SimpleNamespace(connections=[])
+    jack_system._open, jack_system._virtual = (), []
+    jack_system._client = SimpleNamespace(
+        get_ports=lambda **_kind: [keys, knobs],
+        midi_inports=SimpleNamespace(register=lambda _name: own),
+    )
+    jack_system.open(None, "yehu", Heard().receive)
+    assert jack_system.ports() == ["keys", "knobs"]
+    own.connections.append(keys)
+    assert jack_system.ports() == ["knobs"]
 
 
 # ---------------------------------------------------------------- which one

@@ -35,6 +35,12 @@ def test_bundles_keep_their_distances_to_the_sample_and_their_time(make_still, w
     assert still.handler.waiting == still.handler.counts.late_bundles == 0
 
 
+def test_an_unknown_address_is_answered_before_its_time(still, wire):
+    still.take(wire.bundle(still.clock.time() + 30.0, wire.message("/yehu/nots", 67, 90)))
+    assert errors(still.peer.received()) == ["/yehu/nots"]
+    assert still.handler.waiting == 0
+
+
 def test_time_tags_minutes_ahead_are_told_once_with_their_sender(still, wire, caplog):
     for seconds in (30.0, 150.0, 200.0):
         packet = wire.message("/yehu/note", 67, 90)

@@ -74,6 +74,9 @@ def test_bend_and_press_are_parameters_within_bounds_and_move_the_sounding_note(
     assert still.player.pitch == 69.0
     pressed = [value for _, address, value in still.events if address == "/finger/1/press"]
     assert pressed[-1] == 4.0
+    still.send("/bend", -3.0)
+    still.pass_time(0.05)
+    assert still.player.pitch == 65.0  # the open string
 
 
 # ---------------------------------------------------------------- panic and reset

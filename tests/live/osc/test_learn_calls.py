@@ -7,7 +7,8 @@ from wire import FakePeer
 
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc import context, learn_calls
-from yehu_server.playing import learner
+from yehu_server.playing import learn, learner
+from yehu_server.playing.learner import LearnedSource
 from yehu_server.playing.mapping import load
 
 
@@ -208,3 +209,12 @@ def test_every_binding_is_reported_with_where_it_is(still):
     ]  # fmt: skip
     assert rows["bend"][2:4] == [-2.0, 2.0]
     assert rows["cc 7"][6] == -1.0  # not moved yet
+
+
+def test_what_another_server_has_learned_is_not_given_back(still):
+    """Two servers of one user share a file."""
+    still.ask("/learn", "/playing/vibrato")
+    turn(still, 20, 0, 127)
+    learn.learn(still.player.mapping, "/playing/volume", LearnedSource("/d"), soft=False)
+    ((_, count, *returned),) = answers(still.ask("/unlearn", "/playing/vibrato"), "/unlearned")
+    assert (count, returned) == (1, [])

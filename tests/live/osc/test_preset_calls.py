@@ -45,6 +45,7 @@ def test_a_held_parameter_is_sent_where_it_stays(still):
     still.player.hold("/playing/speed", 0.5)
     answer = by_address(still.ask("/preset/load", "flautando"))
     assert answer["/playing/speed"] == [0.5]
+    assert answer["/error"][1].startswith("/playing/speed: held by --set, left out")
     assert still.player.value("/playing/speed") == 0.5
 
 

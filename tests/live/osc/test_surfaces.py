@@ -79,8 +79,8 @@ def test_every_slider_of_the_patch_moves_its_parameter(live, until, patch):
     for param in TABLE:
         if param.address == "/playing/section":  # at most as many as there are
             continue
-        value = param.from_unit(0.3)
-        patch.move(f"/yehu{param.address}", f"{value:.9g}")
+        value = param.clamped(param.from_unit(0.3))
+        patch.move(f"/yehu{param.address}{puredata.MOVED}", f"{value:.9g}")
         until(
             lambda param=param, value=value: (
                 live.player.value(param.address) == pytest.approx(value, rel=1e-5)

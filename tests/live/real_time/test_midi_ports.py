@@ -379,22 +379,20 @@ def test_a_name_that_no_port_has_is_reported_once_and_heard_when_it_comes():
 
 
 @pytest.mark.parametrize(
-    ("patterns", "reason", "needs_library", "line"),
+    ("options", "line"),
     [
-        ((), "no JACK server", False, "MIDI: no keyboard found; looking again now and then"),
-        (("keystep", "breath"), "none", False, "MIDI: no keyboard named keystep or breath found; "),
-        ((), "pip install x", True, "MIDI: no keyboard found: pip install x; looking again"),
+        (MidiOptions(), "MIDI: no keyboard found: no JACK server; looking again now and then"),
+        (MidiOptions(("keys", "breath")), "MIDI: no keyboard named keys or breath found: no JACK"),
+        (MidiOptions(virtual="me"), "MIDI: no keyboard found, and no port me made: no JACK"),
     ],
 )
-def test_where_there_is_no_midi_the_cause_is_said_where_it_helps(
-    patterns, reason, needs_library, line
-):
+def test_where_there_is_no_midi_the_cause_is_said(options, line):
     said = []
     player, memory = SimpleNamespace(learning=SimpleNamespace()), SimpleNamespace(inherited=[])
-    ports = MidiPorts([player], MidiOptions(patterns), memory, [0], said.append)
-    ports.on_event({"event": "none", "reason": reason, "needs_library": needs_library})
+    ports = MidiPorts([player], options, memory, [0], said.append)
+    ports.on_event({"event": "none", "reason": "no JACK server"})
     assert said[0].startswith(line)
-    assert ports.problem == reason
+    assert ports.problem == "no JACK server"
 
 
 # ---------------------------------------------------------------- without a MIDI system

@@ -14,7 +14,7 @@ from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import DELAY_FRAMES, EAR_SAMPLES, hear
-from yehu_server.core.player.notes import is_touched, reverse_bow_at_end, sounding_pitch
+from yehu_server.core.player.notes import is_touched, note_pitch, reverse_bow_at_end
 from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.record import Player
 from yehu_server.core.player.stroke_contours import advance_contours
@@ -34,7 +34,7 @@ def listen(p: Any, c: Any, heard: Any) -> None:
     if p.value[PLAYING.listening] == 0.0 or not is_bowed or c.frame < p.settled_at:
         p.ear.certainty = 0.0
         return
-    pitch = sounding_pitch(p)
+    pitch = p.finger_pitch if is_direct else note_pitch(p)
     aim = pitch + vibrato_semitones(p, c) + heard_semitones(p)
     hear(p.ear, heard, c.frame, p.rate / (p.a4 * exp2((aim - 69.0) / 12.0)))
     if not is_direct:  # who draws the bow corrects it

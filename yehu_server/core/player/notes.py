@@ -245,9 +245,12 @@ def note_pitch(p: Any) -> float:
 
 @compiled_exactly
 def sounding_pitch(p: Any) -> float:
-    """The pitch while a note sounds or the bow is drawn directly, else NaN."""
+    """The pitch while a note sounds or the bow is drawn directly, else NaN.
+
+    A bend goes no lower than the open string.
+    """
     if p.sounding >= 0:
-        return note_pitch(p)
+        return max(note_pitch(p), float(p.open_note[p.string]))
     return float(p.finger_pitch if p.is_direct != 0 else math.nan)
 
 

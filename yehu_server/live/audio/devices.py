@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from yehu_server.errors import DeviceError
+from yehu_server.errors import DeviceError, did_you_mean
 from yehu_server.util.hints import command_name
 
 OUTPUT, INPUT = "output", "input"  # kinds
@@ -95,6 +95,7 @@ def devices(sounddevice: Any, kind: str = OUTPUT) -> list[AudioDevice]:
     ]
 
 
+NULL = "null"  # the name of silence
 NOTHING = "there is no audio {}"
 NO_OUTPUT = NOTHING.format(OUTPUT)
 ADVICE = (
@@ -129,4 +130,5 @@ def choose(devices: Sequence[AudioDevice], wanted: str | None, kind: str = OUTPU
     names = "; ".join(device.full_name for device in fitting or devices) or advice
     if fitting:
         raise DeviceError(f"several audio {kind}s match {wanted!r}: {names}")
-    raise DeviceError(f"no audio {kind} matches {wanted!r} (there are: {names})")
+    near = did_you_mean(wanted, [NULL, *(device.name for device in devices)])
+    raise DeviceError(f"no audio {kind} matches {wanted!r} (there are: {names}){near}")

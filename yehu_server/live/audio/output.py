@@ -18,7 +18,7 @@ import numpy as np
 from yehu_server.core.engine.ensemble import Ensemble
 from yehu_server.core.engine.rig import memory_bytes
 from yehu_server.errors import DeviceError
-from yehu_server.live.audio.devices import OUTPUT
+from yehu_server.live.audio.devices import NULL, OUTPUT
 from yehu_server.system.clocks import NS, monotonic_ns
 from yehu_server.system.memory import SharedMemory
 from yehu_server.util.files import error_reason
@@ -27,7 +27,6 @@ from yehu_server.util.retry import SHORTAGES, AwakeTime, Backoff, run_forever
 
 log = logging.getLogger(__name__)
 
-NULL = "null"
 NULL_RATE = 48000.0
 ANSWER_WITHIN_S, COMPILING_S = 10.0, 300.0
 HUNG_AFTER_S = 2.0

@@ -15,7 +15,7 @@ from alsa_midi import (
 )
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.midi.systems import CLIENT, Receive
+from yehu_server.live.midi.systems import CLIENT, Receive, no_system
 
 # As RtMidi chooses ports.
 PLAYED = PortType.MIDI_GENERIC | PortType.SYNTHESIZER | PortType.APPLICATION
@@ -27,11 +27,11 @@ class System:
 
     name = "ALSA"
 
-    def __init__(self, _api: str) -> None:
+    def __init__(self, api: str) -> None:
         try:
             self._finder, self._listener = SequencerClient(CLIENT), SequencerClient(CLIENT)
         except ALSAError as error:
-            raise DeviceError(f"ALSA's sequencer: {error}") from error
+            raise no_system(api, error) from error
         self._receivers: dict[int, Receive] = {}  # by the number of our port
         threading.Thread(target=self._listen, name="ALSA", daemon=True).start()
 

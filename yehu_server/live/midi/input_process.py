@@ -15,7 +15,7 @@ from yehu_server.core.midi.packing import MAX_BYTES
 from yehu_server.errors import DeviceError
 from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
 from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted
-from yehu_server.live.midi.systems import LibraryError, MidiSystem, open_system
+from yehu_server.live.midi.systems import MidiSystem, open_system
 from yehu_server.system import clocks
 from yehu_server.system.memory import open_shared
 from yehu_server.util.processes import SWITCH_INTERVAL_S, Message, Parent
@@ -150,8 +150,7 @@ class Inputs:
         except DeviceError as error:
             if str(error) != self._problem:
                 self._problem = str(error)
-                needs = isinstance(error, LibraryError)
-                self._parent.send("none", reason=self._problem, needs_library=needs)
+                self._parent.send("none", reason=self._problem)
             return None
         self._parent.send("system", api=system.name)
         if self._virtual is not None:

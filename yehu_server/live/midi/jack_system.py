@@ -26,6 +26,7 @@ class System:
         except jack.JackError as error:
             raise DeviceError("no JACK server") from error
         self._left: set[str] = set()
+        self._virtual: list[Any] = []  # ports that others find by name
         self._open: tuple[tuple[Any, Receive], ...] = ()  # replaced whole: the callback reads it
         self._client.set_shutdown_callback(lambda _status, _reason: os._exit(1))
         self._client.set_port_registration_callback(self._port_changed, only_available=False)
@@ -34,8 +35,10 @@ class System:
         self._client.get_ports(is_midi=True)  # known from now on, their ends have names
 
     def ports(self) -> list[str]:
-        """See `systems.MidiSystem`."""
-        return [port.name for port in self._client.get_ports(is_midi=True, is_output=True)]
+        """See `systems.MidiSystem`; without those that others have connected to a port of ours."""
+        connected = {port.name for own in self._virtual for port in own.connections}
+        ports = self._client.get_ports(is_midi=True, is_output=True)
+        return [port.name for port in ports if port.name not in connected]
 
     def left(self) -> set[str]:
         """See `systems.MidiSystem`."""
@@ -60,7 +63,9 @@ class System:
             own.unregister()
 
         try:
-            if full_name is not None:
+            if full_name is None:
+                self._virtual.append(own)
+            else:
                 self._client.connect(full_name, own)
         except jack.JackError as error:
             close()

@@ -129,7 +129,7 @@ class MidiPorts(Supervisor):
             self._on_message(f"MIDI: {event['port']} cannot be opened: {event['reason']}")
         elif kind == "none":
             self.problem = event["reason"]
-            self._report_none(event["reason"], needs_library=event["needs_library"])
+            self._report_none(event["reason"])
         elif kind == "system":
             self.problem = ""
             log.info("MIDI: through %s", event["api"])
@@ -143,12 +143,12 @@ class MidiPorts(Supervisor):
             return ", and plays no part"
         return f" to part {parts[0]}" if len(parts) == 1 else f" to parts {', '.join(parts)}"
 
-    def _report_none(self, reason: str, *, needs_library: bool) -> None:
+    def _report_none(self, reason: str) -> None:
+        virtual = self._options.virtual
         names = " or ".join((*self._options.patterns, *self._router.patterns))
-        found = f"no keyboard named {names}" if names else "no keyboard"
-        log.debug("MIDI: none, as %s", reason)
-        why = f": {reason}" if needs_library else ""
-        self._on_message(f"MIDI: {found} found{why}; looking again now and then")
+        found = f"no keyboard named {names} found" if names else "no keyboard found"
+        found += f", and no port {virtual} made" if virtual else ""
+        self._on_message(f"MIDI: {found}: {reason}; looking again now and then")
 
     def _report_missing(self, pattern: str, present: Sequence[str]) -> None:
         if pattern not in self._missing:  # once, however often the process starts

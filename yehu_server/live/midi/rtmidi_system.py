@@ -6,7 +6,7 @@ from typing import Any
 import rtmidi
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.midi.systems import CLIENT, Receive
+from yehu_server.live.midi.systems import CLIENT, Receive, no_system
 
 NUMBERS = {
     "alsa": rtmidi.API_LINUX_ALSA,
@@ -24,7 +24,10 @@ class System:
         self.name = str(rtmidi.get_api_display_name(self._number))
         if self._number not in rtmidi.get_compiled_api():
             raise DeviceError(f"RtMidi was compiled without {self.name}")
-        self._finder = self._client()
+        try:
+            self._finder = self._client()
+        except DeviceError as error:
+            raise no_system(api, error) from error
 
     def _client(self) -> Any:
         try:

@@ -51,12 +51,14 @@ def check_api(api: str | None) -> None:
         raise ParameterError(f"--midi-api {api}: not available here; there are: {there}")
 
 
-class LibraryError(DeviceError):
-    """No library of a MIDI system is installed."""
+def no_system(api: str, error: Exception) -> DeviceError:
+    """The error of a system that takes no client, with what may help."""
+    advice = " (modprobe snd-seq loads ALSA's sequencer)" if api == "alsa" else ""
+    return DeviceError(f"{str(error).strip(' .')}{advice}")
 
 
 def library(api: str) -> tuple[str, str]:
-    """A MIDI system's module, and the library it needs; LibraryError says how to get one."""
+    """A MIDI system's module, and the library it needs; DeviceError says how to get one."""
     if api == "jack":
         choices = {"jack_system": ("jack", "JACK-Client")}
     else:
@@ -70,22 +72,21 @@ def library(api: str) -> tuple[str, str]:
     advice = f"{package} is not installed: pip install {package}"
     if package == "python-rtmidi" and sys.version_info >= (3, 13):
         advice += ", which needs a C++ compiler; Python 3.12 and 3.11 need none"
-    raise LibraryError(advice)
+    raise DeviceError(advice)
 
 
 def open_system(api: str | None) -> MidiSystem:
     """Open a client of the named MIDI system, or of the first there is.
 
-    Raises DeviceError where none can be opened: LibraryError where a library may help.
+    Raises DeviceError where none can be opened.
     """
-    problems, kind = [], DeviceError
+    problems = []
     for name in systems() if api is None else (api,):
         try:
             module = importlib.import_module(f"{__package__}.{library(name)[0]}")
             opened: MidiSystem = module.System(name)
         except (DeviceError, ImportError, OSError) as error:  # OSError: a library of the system's
             problems.append(str(error).strip(" ."))
-            kind = LibraryError if isinstance(error, LibraryError) else kind
         else:
             return opened
-    raise kind("; ".join(problems) or "no MIDI system of this platform is known")
+    raise DeviceError("; ".join(problems) or "no MIDI system of this platform is known")

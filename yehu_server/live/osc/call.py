@@ -87,7 +87,7 @@ def _number(argument: Any, place: int) -> float:
 
 
 def _kind(argument: Any) -> str:
-    kinds = {str: "a string", bytes: "a blob", type(None): "nil", list: "an array"}
+    kinds = {str: "a string", bytes: "bytes", type(None): "nil", list: "an array"}
     return kinds.get(type(argument), f"a {type(argument).__name__}")
 
 

@@ -68,4 +68,7 @@ class OscClient:
         for message in self.answers(within_s):
             if message.address == address:
                 return message
-        raise DeviceError(f"no server answers at {self._name}; is {command_name()} serve running?")
+        raise DeviceError(
+            f"no server answers at {self._name}; is {command_name()} serve running? "
+            "At another address: --server HOST:PORT"
+        )

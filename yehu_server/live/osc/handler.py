@@ -88,7 +88,8 @@ class OscHandler:
                     continue
                 self.counts.messages += not is_due
                 if message.due_s is not None and message.due_s > now:
-                    self._keep(message, peer)
+                    if self._actions(message.address, peer):
+                        self._keep(message, peer)
                     continue
                 self.counts.late_bundles += message.due_s is not None and not is_late
                 is_late |= message.due_s is not None

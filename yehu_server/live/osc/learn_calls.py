@@ -51,7 +51,7 @@ class LearnCalls(GroupCalls):
     def _learned(
         self, peer: Peer, target: str, found: LearnedSource, soft: bool, only: bool
     ) -> Callable[[], None]:
-        before = self._player.mapping
+        before = learn.current(self._player.mapping)
         source = found.source
         if self._group and is_address(source):
             found = replace(found, part=part_of(self._group) + 1)
@@ -73,7 +73,7 @@ class LearnCalls(GroupCalls):
         self._write(call.peer, "/unlearn", partial(self._unlearned, call.peer, target))
 
     def _unlearned(self, peer: Peer, target: str) -> Callable[[], None]:
-        before = self._player.mapping
+        before = learn.current(self._player.mapping)
         mapping, count = learn.unlearn(before, target)
         returned = self._pairs(mapping, before)
 

@@ -5,14 +5,14 @@ import errno
 import socket
 
 from yehu_server.errors import DeviceError, YehuError
-from yehu_server.live.network import format_address
+from yehu_server.live.network import format_address, why_not
 from yehu_server.live.osc.command_client import OscClient
-from yehu_server.util.files import error_reason
 
 TRIES_FOR_A_PORT = 20
 # Of who is asked at an address in use.
 ANSWERS_WITHIN_S = 0.3
-BESIDE = "--osc :9010 --http :9011"
+HTTP_BESIDE = "--http :9011"
+BESIDE = f"--osc :9010 {HTTP_BESIDE}"
 LOCAL = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - nothing is bound
 
 
@@ -26,7 +26,7 @@ def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
         return _bind(family, host, port)
     except OSError as error:
         raise DeviceError(
-            f"OSC: cannot listen at {format_address(host, port)}: {error_reason(error)}"
+            f"OSC: cannot listen at {format_address(host, port)}: {why_not(error)}"
             f"{by_whom(error, host, port)}"
         ) from error
 

@@ -38,6 +38,9 @@ class PresetCalls(GroupCalls):
         own = {one: value for one, value in values.items() if one not in shared}
         self._player.load(own, frame=call.frame)
         self._echo(call.peer, own)
+        if kept := [one for one in own if address == "/preset/load" and self._player.keeps(one)]:
+            held = f"{', '.join(kept)}: held by --set, left out; {self._prefix}/release frees it"
+            self._send_error(call.peer, address, held)
         if shared:
             which = f"{', '.join(shared)}: one for all parts, left out; "
             self._send_error(call.peer, address, f"{which}{PREFIX}{address} sets what all share")

@@ -22,10 +22,10 @@ from prometheus_client.registry import Collector
 
 from yehu_server.errors import DeviceError, one_line
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.network import Address, Allowed, format_address, plain
+from yehu_server.live.network import Address, Allowed, format_address, plain, why_not
 from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.context import CallContext
-from yehu_server.live.osc.listening_sockets import BESIDE
+from yehu_server.live.osc.listening_sockets import HTTP_BESIDE
 from yehu_server.live.osc.peers import WebTraffic
 from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.status import PART_STATUS, STATUS, Kind
@@ -35,7 +35,7 @@ from yehu_server.live.web.loop_thread import LoopThread
 from yehu_server.live.web.request_filter import Connections, check, own_names, serve_http
 from yehu_server.live.web.web_sockets import WebSockets
 from yehu_server.params.table import PREFIX
-from yehu_server.util.files import error_reason, shipped_folder
+from yehu_server.util.files import shipped_folder
 
 log = logging.getLogger(__name__)
 
@@ -200,9 +200,8 @@ def listen(what: str, host: str, port: int) -> socket.socket:
     except OSError as error:
         where = format_address(host, port)
         is_other = what == OSCQUERY and error.errno == errno.EADDRINUSE
-        beside = f"; play beside it: {BESIDE}" * is_other
-        reason = f"{error_reason(error)}{beside}"
-        raise DeviceError(f"{what}: cannot listen at {where}: {reason}") from error
+        beside = f"; play beside it: {HTTP_BESIDE}" * is_other
+        raise DeviceError(f"{what}: cannot listen at {where}: {why_not(error)}{beside}") from error
 
 
 def _html(text: str) -> web.Response:

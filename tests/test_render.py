@@ -24,6 +24,7 @@ from yehu_server.rendering.summary import limited_db
 from yehu_server.rendering.to_files import render
 from yehu_server.scores.score import Score, concatenate
 from yehu_server.scores.smf.reader import read_score
+from yehu_server.util.loudness import IntegratedLoudness
 
 ROOT = Path(__file__).resolve().parents[1]
 TUNE = ROOT / "examples" / "shi_bei_jiu.mid"
@@ -162,6 +163,33 @@ def test_normalize_puts_the_true_peak_at_minus_1_dbfs(play, phrase, subtype, gai
     assert 20.0 * math.log10(np.abs(between).max()) == pytest.approx(-1.0, abs=0.15)
     assert summary["peak"] == pytest.approx(np.abs(sound).max(), abs=STEP[subtype])
     assert summary["rms"] == pytest.approx(rms(sound), abs=STEP[subtype])
+
+
+def test_a_loudness_is_reached_as_far_as_the_true_peak_allows_and_the_rest_is_said(
+    command, play, phrase, tmp_path
+):
+    words = ("--tail", 0, "--subtype", "float")
+    _, sound = play(phrase, *words, "--loudness", -33, "--gain-db", 3)
+    meter = IntegratedLoudness(44100)
+    meter.add(sound)
+    assert meter.lufs() == pytest.approx(-33.0, abs=0.01)
+    normal, highest = play(phrase, *words, "--normalize")
+    found, sound = play(phrase, *words, "--loudness", -2)
+    np.testing.assert_array_equal(sound, highest)
+    assert found["asked_lufs"] == -2.0
+    render_words = ("render", phrase, "-o", tmp_path / "a.wav", "--dry", "--mono", *words)
+    said = f"{-2.0 - normal['loudness_lufs']:.1f} LU quieter than asked for"
+    assert said in command(*render_words, "--loudness", -2)[1]
+    assert "quieter" not in command(*render_words, "--loudness", -33)[1]
+    code, _, error = command(*render_words, "--loudness", -16, "--normalize")
+    assert code == 2
+    assert "--loudness" in error
+
+
+def test_silence_has_no_loudness_to_reach(play, midi):
+    found, sound = play(midi(*notes((0, 0.1, 70, 64))), "--tail", 0, "--loudness", -16)
+    assert found["loudness_lufs"] is None  # 0.4 s at most
+    assert 0.0 < np.abs(sound).max() < 0.8
 
 
 def test_a_peak_that_the_limiter_lowers_is_said(command, midi, tmp_path):

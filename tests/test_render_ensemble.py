@@ -20,7 +20,7 @@ from yehu_server.playing.stringing import notes_of
 from yehu_server.rendering import cores
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.rendering.to_files import write_normalized
+from yehu_server.rendering.to_files import write_scaled
 from yehu_server.scores.reading import ReadOptions, part_of, read_any
 from yehu_server.scores.score import Score
 from yehu_server.scores.smf.reader import read_score
@@ -106,7 +106,7 @@ def test_the_report_has_a_line_for_each_part(command, trio, tmp_path):
     assert lines[4] == "channel 10 is percussion: 4 notes not played; --channel 10 plays them"
 
 
-@pytest.mark.parametrize("words", [("--normalize", "--mono"), ("--dry",)])
+@pytest.mark.parametrize("words", [("--normalize", "--mono"), ("--dry",), ("--loudness", -28)])
 def test_the_mix_is_the_sum_of_its_stems(play, trio, tmp_path, words):
     summary, mix, stems = play(
         trio, "--ensemble", "--stems", tmp_path / "stems", "--tail", 0, *words
@@ -117,6 +117,8 @@ def test_the_mix_is_the_sum_of_its_stems(play, trio, tmp_path, words):
     if "--normalize" in words:
         # The true peak is at -1 dB: samples are no higher.
         assert np.abs(mix).max() == pytest.approx(10.0 ** (-1.0 / 20.0), abs=0.01)
+    if "--loudness" in words:
+        assert summary["loudness_lufs"] == pytest.approx(-28.0, abs=0.05)
     names = [Path(stem).name for stem in summary["stems"]]
     assert names[1] == "02-channel-2.wav"
 
@@ -125,7 +127,9 @@ def test_a_stem_that_is_louder_than_the_mix_is_not_clipped(tmp_path):
     written = [[], []]
     files = [SimpleNamespace(write=each.append) for each in written]
     takes = [[np.full(64, 0.2, np.float32), np.full(64, 1.5, np.float32)]]
-    factor = write_normalized(takes, files, tmp_path)
+    factor = write_scaled(
+        takes, files, tmp_path, lambda peak: Options(normalize=True).factor(peak, None)
+    )
     mix, room = map(np.concatenate, written)
     assert 0.75 < room.max() < 0.9
     assert mix.max() == pytest.approx(0.2 * factor)

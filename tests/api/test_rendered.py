@@ -45,6 +45,7 @@ SCALE = next((Path(__file__).parents[2] / "tunings").glob("*.scl"))
         ({"preset": "flautando", "seed": 3}, "--preset flautando --seed 3"),
         ({"settings": {"/playing/vibrato": 20.0}}, "--set /playing/vibrato=20"),
         ({"normalize": True, "phrasing": 0.0}, "--normalize --phrasing 0"),
+        ({"loudness_lufs": -31.0}, "--loudness -31"),
         ({"gain_db": -6.0, "tuning": SCALE}, f"--gain-db -6 --tuning {shlex.quote(str(SCALE))}"),
         ({"instrument": SLACK}, "--instrument mine.toml"),
     ],

@@ -99,10 +99,15 @@ def test_state_opens_in_a_new_instance(play, shown, tmp_path):
     assert np.array_equal(first[2000:], second[2000:])
     assert np.abs(first).max() > 0.01
     # One of another version opens as far as it is known.
-    state.write_text("yehu 9\n/playing/nothing=3\n/mapping=theremin\n/playing/press=2.5\nand more")
+    state.write_text(
+        "yehu 9\n/playing/nothing=3\n/mapping=theremin\n/playing/press=2.5\n"
+        "/playing/direction=-1\n/playing/string=outer\nand more"
+    )
     values = {int(number): value for number, value, _ in play([f"0 load {state}"], 64)[1]["value"]}
     assert values[shown["/playing/press"].number] == 2.5
     assert values[shown["/mapping"].number] == 0.0
+    assert values[shown["/playing/direction"].number] == -1.0  # by its number, as once
+    assert values[shown["/playing/string"].number] == 2.0
     state.write_text("yehu 1\n/preset=vibrato, changed\n/playing/vibrato=40\n")
     assert play([f"0 load {state}", f"1 save {state}"], 64)[1]["saved"] == [[1.0]]
     assert "/preset=vibrato, changed\n" in state.read_text()

@@ -92,3 +92,4 @@ def test_lilv_finds_plug_in_and_presets(built, tmp_path):
     assert not printed.stderr
     assert "sul-ponticello" in printed.stdout
     assert "Finger 4 press by hand" in printed.stdout
+    assert '-1 = "up"' in printed.stdout

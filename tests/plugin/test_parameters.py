@@ -54,10 +54,14 @@ def test_every_parameter_of_the_table_is_there_as_it_is(shown):
         assert each.unit == ("" if param.unit == "1" else param.unit)
 
 
-def test_articulations_are_a_list_of_their_names(shown):
-    names = tuple(each.name for each in ARTICULATIONS)
-    assert shown["/playing/articulation"].choices == names
-    assert shown["/playing/articulation"].steps == len(names) - 1
+def test_what_has_few_values_is_a_list_of_their_names(shown):
+    names = {each.address: each.choices for each in shown.values() if each.group == "Playing"}
+    assert names["/playing/articulation"] == tuple(each.name for each in ARTICULATIONS)
+    assert names["/playing/direction"] == ("up", "alternating", "down")
+    assert names["/playing/string"] == ("either", "inner", "outer")
+    assert names["/playing/pizzicato"] == names["/playing/portamento"] == ("off", "on")
+    for each in shown.values():
+        assert len(each.choices) == (each.steps + 1 if 0 < each.steps < 100 else 0), each.name
 
 
 def test_it_begins_as_the_page_and_the_server(shown):

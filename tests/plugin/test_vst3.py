@@ -87,7 +87,7 @@ def test_a_host_with_a_table_of_its_own_does_not_undo_a_preset(built, shown):
     plugin.set_parameter(numbers["Preset"], choices.index("pizzicato") / (len(choices) - 1))
     for _ in range(3):
         assert level() < bowed - 20.0
-        assert plugin.get_parameter_text(numbers["Pizzicato"]) == "1"
+        assert plugin.get_parameter_text(numbers["Pizzicato"]) == "on"
         assert plugin.get_parameter_text(numbers["Preset"]) == "pizzicato"
     plugin.set_parameter(numbers["Pizzicato"], 1.0)
     assert level() < bowed - 20.0

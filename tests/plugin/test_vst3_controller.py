@@ -51,6 +51,12 @@ def test_keys_that_choose_articulations_are_key_switches_with_names(controller, 
     assert controller.key_switches(channel=16) == []
 
 
+def test_choices_are_shown_by_their_names(controller, shown):
+    for each in shown.values():
+        units = [step / each.steps for step in range(len(each.choices))]
+        assert tuple(controller.text(each.number, unit) for unit in units) == each.choices
+
+
 def test_numbers_that_are_none_do_no_harm(controller, shown):
     for each in shown.values():
         for unit in (float("nan"), float("inf"), -1e300, 1e300):

@@ -6,6 +6,7 @@
  * last, the value that the controller shows, the width of the inner window, and flags of restarts.
  */
 #include <dlfcn.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,8 +18,9 @@
 #include <xcb/xcb.h>
 
 namespace {
-int timers, edits, restarted;
+int timers, edits, restarted, waited;
 v3_timer_handler **timer;
+v3_event_handler **waiting;
 v3_param_id edited;
 double value;
 
@@ -26,8 +28,8 @@ v3_result V3_API query(void *self, const v3_tuid id, void **into);
 uint32_t V3_API stay(void *) { return 1; }
 const v3_funknown unknown = {query, stay, stay};
 
-v3_result V3_API no_events(void *, v3_event_handler **, int) { return V3_NOT_IMPLEMENTED; }
-v3_result V3_API none(void *, v3_event_handler **) { return V3_NOT_IMPLEMENTED; }
+v3_result V3_API wait(void *, v3_event_handler **handler, int file) { return waiting = handler, waited = file, V3_OK; }
+v3_result V3_API forget(void *, v3_event_handler **) { return waiting = nullptr, V3_OK; }
 v3_result V3_API start(void *, v3_timer_handler **handler, uint64_t) { return timers++, timer = handler, V3_OK; }
 v3_result V3_API stop(void *, v3_timer_handler **) { return timers--, V3_OK; }
 v3_result V3_API resize(void *, v3_plugin_view **, v3_view_rect *) { return V3_FALSE; }
@@ -35,7 +37,7 @@ v3_result V3_API mark(void *, v3_param_id) { return V3_OK; }
 v3_result V3_API perform(void *, v3_param_id id, double to) { return edits++, edited = id, value = to, V3_OK; }
 v3_result V3_API restart(void *, int32_t flags) { return restarted |= flags, V3_OK; }
 
-const v3_run_loop_cpp loop_table = {unknown, {no_events, none, start, stop}};
+const v3_run_loop_cpp loop_table = {unknown, {wait, forget, start, stop}};
 const v3_plugin_frame_cpp frame_table = {unknown, {resize}};
 const struct { v3_funknown unknown; v3_component_handler edits; } handler_table = {unknown, {mark, perform, mark, restart}};
 const void *loop = &loop_table, *frame = &frame_table, *handler = &handler_table;
@@ -74,13 +76,18 @@ int main(int words, char **word) {
     if (v3_cpp_obj(view)->attached(view, (void *)(uintptr_t)window, V3_VIEW_PLATFORM_TYPE_X11) != V3_OK) return 7;
     const int open_timers = timers;
     v3_cpp_obj(timer)->on_timer(timer);
+    if (!waiting) return 9;
     xcb_query_tree_reply_t *tree = xcb_query_tree_reply(x, xcb_query_tree(x, window), nullptr);
     const xcb_window_t inner = xcb_query_tree_children(tree)[0];
     xcb_button_press_event_t event = {};
     event.response_type = XCB_BUTTON_PRESS, event.detail = 1, event.event = inner;
     event.event_x = (int16_t)atoi(word[2]), event.event_y = (int16_t)atoi(word[3]);
     xcb_send_event(x, 0, inner, XCB_EVENT_MASK_NO_EVENT, (const char *)&event);
-    for (int tries = 0; tries < 100 && edits == 0; tries++) settle(), v3_cpp_obj(timer)->on_timer(timer);
+    settle();
+    for (int tries = 0; tries < 100 && edits == 0; tries++) { /* as a host without time for timers */
+        pollfd file = {waited, POLLIN, 0};
+        if (poll(&file, 1, 100) > 0) v3_cpp_obj(waiting)->on_fd_is_set(waiting, waited);
+    }
     size = {0, 0, 1020, 900};
     v3_cpp_obj(view)->check_size_constraint(view, &size);
     v3_cpp_obj(view)->on_size(view, &size);
@@ -92,6 +99,7 @@ int main(int words, char **word) {
         free(geometry);
     }
     v3_cpp_obj(view)->removed(view);
+    if (waiting) return 8;
     v3_cpp_obj_unref(view);
     printf("%d %d %d %u %g %g %d %d\n", open_timers, timers, edits, edited, value,
            v3_cpp_obj(controller)->get_parameter_normalised(controller, edited), width, restarted);

@@ -26,7 +26,7 @@ from yehu_server.playing.mapping import DEFAULT
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
 from yehu_server.rendering.summary import Summary, summary_of
-from yehu_server.rendering.to_files import NORMALIZED_PEAK, TruePeak
+from yehu_server.rendering.to_files import TruePeak
 from yehu_server.scores.phrasing import PHRASING
 from yehu_server.scores.reading import ReadOptions, read_any
 from yehu_server.scores.score import Score
@@ -117,6 +117,7 @@ def render(
     dry: bool = False,
     mono: bool = False,
     normalize: bool = False,
+    loudness_lufs: float | None = None,
     gain_db: float | None = None,
     tail: float | None = None,
     a4: float = 440.0,
@@ -154,6 +155,8 @@ def render(
         One channel, the mean of both.
     normalize : bool
         Scale the sound to a true peak of -1 dB of full scale, between the samples too.
+    loudness_lufs : float, optional
+        Scale the sound to this integrated loudness, -60 to 0, or to that peak if it is quieter.
     gain_db : float, optional
         Gain before the limiter, -60 to 24; by default that of the preset, else 0.
     tail : float, optional
@@ -212,6 +215,9 @@ def render(
         rate=rate,
         tail_s=None if tail is None else number(tail, "tail", 0.0, LONGEST_TAIL_S),
         normalize=bool(normalize),
+        loudness_lufs=None
+        if loudness_lufs is None
+        else number(loudness_lufs, "loudness_lufs", -60.0, 0.0),
         block=BLOCK,
         is_dry=bool(dry),
         is_mono=bool(mono),
@@ -248,21 +254,23 @@ def _played(
         pitches.append(np.nan if asked is None else asked)
     empty = np.zeros((0,) if options.is_mono else (0, 2), np.float32)
     sound = np.concatenate(blocks) if blocks else empty
+    loudness = IntegratedLoudness(options.rate)
+    loudness.add(sound)
     factor = 1.0
-    if options.normalize:
+    if options.is_scaled:
         meter = TruePeak()
         meter.add(sound)
-        if (true_peak := meter.finish()) > 0.0:
-            factor = NORMALIZED_PEAK / true_peak
-            sound *= np.float32(factor)
+        factor = options.factor(meter.finish(), loudness.lufs())
+        sound *= np.float32(factor)
     peak = float(np.abs(sound).max(initial=0.0))
     rms = float(np.sqrt(np.mean(np.square(sound, dtype=np.float64)))) if sound.size else 0.0
     elapsed_s = time.perf_counter() - start
     length_s = frames / options.rate
-    loudness = IntegratedLoudness(options.rate)
-    loudness.add(sound)
-    levels = peak, rms, loudness.lufs()
-    summary = summary_of(performance, length_s, elapsed_s, *levels, factor=factor)
+    levels = peak, rms, loudness.lufs(factor)
+    asked_lufs = options.loudness_lufs
+    summary = summary_of(
+        performance, length_s, elapsed_s, *levels, asked_lufs=asked_lufs, factor=factor
+    )
     return sound, (np.array(times), np.array(pitches)), summary
 
 

@@ -33,10 +33,13 @@ def add_sound(group: Any) -> None:
             below full scale, at most 5 s)
         --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
         --normalize: scale the result to a true peak of -1 dBFS (with --stems, the loudest file)
+        --loudness LUFS: scale the result to an integrated loudness, such as -16 or -23, or to a
+            true peak of -1 dBFS if that is quieter; stems keep their balance
         """,
         rate={"type": whole, "default": 44100},
         tail={"type": number_within(0.0, 600.0, "s"), "dest": "tail_s"},
         gain_db=number_within(-60.0, 24.0, "dB"),
+        loudness={"type": number_within(-60.0, 0.0, "LUFS"), "dest": "loudness_lufs"},
     )
 
 
@@ -95,10 +98,12 @@ def _ensemble_file(text: str) -> Path:
 
 
 def check_sound(arguments: argparse.Namespace) -> None:
-    """Refuse a rate that no instrument has, and as `check_room` does: raises ParameterError."""
+    """Refuse a rate that no instrument has, two levels, or as `check_room`; ParameterError."""
     from yehu_server.core.physics.grid import check_rate
 
     check_rate(arguments.rate)
+    if arguments.normalize and arguments.loudness_lufs is not None:
+        raise ParameterError("--normalize and --loudness both say how loud: leave out one")
     check_room(arguments)
 
 

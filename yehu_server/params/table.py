@@ -219,6 +219,7 @@ NAMES: Mapping[str, Mapping[str, float]] = {
     "/playing/articulation": NUMBER,
     "/playing/string": {"either": 0.0, "inner": 1.0, "outer": 2.0},
     "/playing/direction": {"alternating": 0.0, "down": 1.0, "up": -1.0},
+    **{each: {"off": 0.0, "on": 1.0} for each in ("/playing/pizzicato", "/playing/portamento")},
 }
 BY_ADDRESS = {param.address: param for param in TABLE}
 ENGINE: tuple[Param, ...] = tuple(param for param in TABLE if param.place is Place.ENGINE)

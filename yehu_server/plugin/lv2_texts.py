@@ -150,10 +150,9 @@ def _port(index: int, each: HostParameter) -> str:
     if each.choices:
         lines.append("lv2:portProperty lv2:integer , lv2:enumeration")
         labels = map(_text, each.choices)
-        points = (f"[ rdfs:label {name} ; rdf:value {i} ]" for i, name in enumerate(labels))
+        numbered = enumerate(labels, round(each.lo))
+        points = (f"[ rdfs:label {name} ; rdf:value {number} ]" for number, name in numbered)
         lines.append(f"lv2:scalePoint {' , '.join(points)}")
-    elif (each.steps, each.lo) == (1, 0.0):
-        lines.append("lv2:portProperty lv2:toggled")
     elif each.steps > 0:
         lines.append("lv2:portProperty lv2:integer")
     if each.is_exponential:

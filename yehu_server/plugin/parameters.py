@@ -9,10 +9,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from yehu_server.core.player.parameter_indices import INDEX
-from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.preset_file import FIRST_LIVE
 from yehu_server.params.spec import Curve, Param
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import NAMES, TABLE
 from yehu_server.plugin.carried import Carried
 
 # A plug-in is a part of one player.
@@ -54,7 +53,6 @@ class HostParameter:
 
 
 ARTICULATION = "/playing/articulation"
-ARTICULATION_NAMES = tuple(each.name for each in ARTICULATIONS)
 
 
 def parameters(data: Carried) -> list[HostParameter]:
@@ -103,8 +101,9 @@ def _of_table(param: Param, first: Mapping[str, float]) -> HostParameter:
     # What the player moves; whoever moves it takes it over until the next note.
     name += " by hand" if param.player_controlled and group in HANDS else ""
     # Messages may have numbers that nothing has yet; a list has what there is.
-    choices = ARTICULATION_NAMES if param.address == ARTICULATION else ()
-    hi = len(choices) - 1.0 if choices else param.hi
+    names = NAMES.get(param.address, {})
+    choices = tuple(sorted(names, key=lambda name: names[name]))
+    hi = max(names.values(), default=param.hi)
     return HostParameter(
         param.address,
         name[0].upper() + name[1:],

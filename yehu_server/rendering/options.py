@@ -104,6 +104,9 @@ def unheard_line(chosen: Collection[int], found: Sequence[int]) -> str:
     return f"no note is of channel {asked}, but of {has}" if asked and has else ""
 
 
+NORMALIZED_PEAK = 0.8912509381337456  # a true peak of -1 dB
+
+
 @dataclass(frozen=True)
 class Options:
     """The sound to render; see ``yehu-server render --help``."""
@@ -112,11 +115,26 @@ class Options:
     format_name: str = "wav"
     subtype: str = "24"
     tail_s: float | None = None  # None: until it is quiet
-    normalize: bool = False
+    normalize: bool = False  # scaled to a true peak of NORMALIZED_PEAK
+    loudness_lufs: float | None = None  # integrated loudness that it is scaled to, below that peak
     block: int = BLOCK
     is_dry: bool = False  # without a room, and with a body that sounds alike to both sides
     is_mono: bool = False
     jobs: int | None = None  # number of cores; None: all
+
+    @property
+    def is_scaled(self) -> bool:
+        """Whether the sound is scaled, once all of it is known."""
+        return self.normalize or self.loudness_lufs is not None
+
+    def factor(self, true_peak: float, lufs: float | None) -> float:
+        """The factor by which a sound of such a peak and loudness is scaled; 1 for silence."""
+        if true_peak <= 0.0 or not self.is_scaled:
+            return 1.0
+        highest = NORMALIZED_PEAK / true_peak
+        if self.loudness_lufs is None:
+            return highest
+        return 1.0 if lufs is None else min(highest, 10.0 ** ((self.loudness_lufs - lufs) / 20.0))
 
     @property
     def sound_channels(self) -> int:

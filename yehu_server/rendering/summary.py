@@ -73,6 +73,7 @@ class Summary:
     timing_shaped: bool = False  # whether rubato moved onsets of a MIDI file
     limited_db: float = 0.0  # by how much the limiter lowered the highest peak
     clipped: tuple[str, ...] = ()  # stems above full scale, in a format that ends there
+    asked_lufs: float | None = None  # that it was scaled to, as far as its true peak allows
     unheard_channels: tuple[int, ...] = ()  # 1 to 16: whose CC 7 or 11 stays at 0
 
     def remarks(self, drum_hint: str = "", moved_hint: str = "") -> list[str]:
@@ -87,7 +88,10 @@ class Summary:
         lower = counted(self.lower_notes, "lower note")
         solves = counted(self.unconverged_solves, "friction solve")
         lost, fate = counted(self.lost_states, "time"), f"{FATE[self.policy]}{moved_hint}"
+        reached, asked = self.loudness_lufs, self.asked_lufs
+        quieter = 0.0 if reached is None or asked is None else asked - reached
         lines = {
+            f"{quieter:.1f} LU quieter than asked for: the true peak is -1 dBFS": quieter > 0.05,
             f"channel 10 is percussion: {percussion} not played{drum_hint}": self.percussion_notes,
             f"{moved} outside {self.range}, {fate}": self.notes_out_of_range,
             f"{lower} of chords are not played": self.lower_notes,
@@ -110,6 +114,7 @@ def summary_of(
     rms: float,
     loudness_lufs: float | None,
     *,
+    asked_lufs: float | None = None,
     factor: float = 1.0,
     clipped: Sequence[str] = (),
 ) -> Summary:
@@ -145,6 +150,7 @@ def summary_of(
         lower_notes=sum(one.part.lower_notes for one in players),
         limited_db=limited_db(peak / factor, players[0].player.value("/output/limiter")),
         clipped=tuple(clipped),
+        asked_lufs=asked_lufs,
         unheard_channels=tuple(sorted({each for one in players for each in _unheard(one)})),
     )
 

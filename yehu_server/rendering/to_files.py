@@ -1,4 +1,4 @@
-"""Render parts: to sound files and stems, scaled to a true peak; or to a capture."""
+"""Render parts: to sound files and stems, scaled to a true peak or a loudness; or to a capture."""
 
 import contextlib
 import tempfile
@@ -76,7 +76,6 @@ class TruePeak:
                 self.peak = max(self.peak, float(np.abs(between).max()))
 
 
-NORMALIZED_PEAK = 0.8912509381337456  # a true peak of -1 dB
 CHUNK = 1 << 18  # bytes that are read again at a time: whole frames
 
 
@@ -92,10 +91,13 @@ def _plain(name: str) -> str:
     return plain[:60].strip("-.") or "part"
 
 
-def write_normalized(
-    takes: Iterable[Sequence[Samples]], files: Sequence[SoundWriter], folder: Path | None
+def write_scaled(
+    takes: Iterable[Sequence[Samples]],
+    files: Sequence[SoundWriter],
+    folder: Path | None,
+    factor_of: Callable[[float], float],
 ) -> float:
-    """Write blocks, scaled so that the loudest file has a true peak of NORMALIZED_PEAK.
+    """Write blocks, scaled by what `factor_of` returns for the true peak of the loudest file.
 
     `takes` has of each block the samples for each of the files; all are scaled alike, by what is
     returned. Temporary files are in `folder`; None: where the system has its own. Raises
@@ -118,7 +120,7 @@ def write_normalized(
                 f"{folder or tempfile.gettempdir()}: cannot write: {error_reason(error)}"
             ) from error
         peak = max(meter.finish() for meter in meters)
-        factor = np.float32(NORMALIZED_PEAK / peak if peak > 0.0 else 1.0)
+        factor = np.float32(factor_of(peak))
         for scratch, file in zip(scratches, files, strict=True):
             while data := scratch.read(CHUNK):
                 file.write(np.frombuffer(data, np.float32).reshape(shape) * factor)
@@ -159,8 +161,11 @@ def render(
         loudness = IntegratedLoudness(options.rate)
         takes = _takes(performance, len(files), progress, watch, loudness)
         factor = 1.0
-        if options.normalize:
-            factor = write_normalized(takes, files, None if target is PIPE else target.parent)
+        if options.is_scaled:
+            folder = None if target is PIPE else target.parent
+            factor = write_scaled(
+                takes, files, folder, lambda peak: options.factor(peak, loudness.lufs())
+            )
         else:
             for take in takes:
                 for file, samples in zip(files, take, strict=True):
@@ -178,6 +183,7 @@ def render(
         file.peak,
         file.rms,
         loudness.lufs(factor),
+        asked_lufs=options.loudness_lufs,
         factor=factor,
         clipped=clipped if ends else (),
     )

@@ -28,6 +28,7 @@ public:
     void close() { window.close(); }
     void show(bool is_shown) { window.show(is_shown); }
     uintptr_t handle() const { return window.handle(); }
+    int file() const { return window.file(); }
     int width() const { return wide; }
     int height() const { return high; }
     /* The largest picture that fits into a size, which becomes its size. */

@@ -45,8 +45,8 @@ bool read_number(const char *text, double *value) {
 
 const char *choice_of(int parameter, double value) {
     const Parameter &p = parameters[parameter];
-    value = floor(value + 0.5);
-    return p.choices && value >= 0.0 && value <= p.steps ? p.choices[(int)value] : nullptr;
+    const double step = floor(value - p.lo + 0.5);
+    return p.choices && step >= 0.0 && step <= p.steps ? p.choices[(int)step] : nullptr;
 }
 
 int parameter_at(const char *address, size_t length) {
@@ -86,7 +86,7 @@ bool Settings::read(int parameter, const char *text, double *value) {
     const Parameter &p = parameters[parameter];
     if (parameter == PRESET && changed_in(text) > 0) return *value = NO_PRESET, true;
     for (int i = 0; p.choices && i <= p.steps; i++)
-        if (!strcmp(p.choices[i], text)) return *value = i, true;
+        if (!strcmp(p.choices[i], text)) return *value = p.lo + i, true;
     if (!read_number(text, value)) return false;
     if (p.choices) return *value >= p.lo && *value <= p.hi; /* a number without a choice is none */
     *value = *value < p.lo ? p.lo : *value > p.hi ? p.hi : *value;

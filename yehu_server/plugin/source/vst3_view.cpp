@@ -13,7 +13,7 @@ namespace yehu {
 
 namespace {
 
-enum { VIEW, SCALING, TIMER, PLACES };
+enum { VIEW, SCALING, TIMER, EVENTS, PLACES };
 
 struct View {
     const void *tables[PLACES]; /* first: see `viewed` */
@@ -29,6 +29,7 @@ template <int place> View &viewed(void *self) { return *(View *)((const void **)
 void stop(View &view) {
     if (!view.loop) return;
     v3_cpp_obj(view.loop)->unregister_timer(view.loop, (v3_timer_handler **)&view.tables[TIMER]);
+    v3_cpp_obj(view.loop)->unregister_event_handler(view.loop, (v3_event_handler **)&view.tables[EVENTS]);
     v3_cpp_obj_unref(view.loop);
     view.loop = nullptr;
 }
@@ -37,7 +38,7 @@ template <int place> v3_result V3_API query_view(void *self, const v3_tuid id, v
     View &view = viewed<place>(self);
     const struct { const uint8_t *id; int at; } known[] = {
         {v3_funknown_iid, VIEW}, {v3_plugin_view_iid, VIEW}, {v3_plugin_view_content_scale_iid, SCALING},
-        {v3_timer_handler_iid, TIMER}};
+        {v3_timer_handler_iid, TIMER}, {v3_event_handler_iid, EVENTS}};
     for (const auto &each : known)
         if (v3_tuid_match(each.id, id)) {
             view.references++;
@@ -76,8 +77,10 @@ v3_result V3_API attached(void *self, void *parent, const char *kind) {
     if (!Window::has_timer() && view.frame)
         v3_cpp_obj_query_interface(view.frame, v3_run_loop_iid, &view.loop);
     if ((!Window::has_timer() && !view.loop) || !view.editor.open((uintptr_t)parent)) return V3_FALSE;
-    if (view.loop)
-        v3_cpp_obj(view.loop)->register_timer(view.loop, (v3_timer_handler **)&view.tables[TIMER], Editor::INTERVAL_MS);
+    if (!view.loop) return V3_OK;
+    v3_cpp_obj(view.loop)->register_timer(view.loop, (v3_timer_handler **)&view.tables[TIMER], Editor::INTERVAL_MS);
+    /* Some hosts (DawDreamer) have no time for timers. */
+    v3_cpp_obj(view.loop)->register_event_handler(view.loop, (v3_event_handler **)&view.tables[EVENTS], view.editor.file());
     return V3_OK;
 }
 
@@ -123,6 +126,7 @@ v3_result V3_API set_scale(void *self, float scale) {
 }
 
 void V3_API on_timer(void *self) { viewed<TIMER>(self).editor.tick(); }
+void V3_API on_event(void *self, int) { viewed<EVENTS>(self).editor.tick(); }
 
 /* The host sets the processor, too. */
 void edit(void *owner, int parameter, double value) {
@@ -149,13 +153,14 @@ const v3_plugin_view_cpp view_table = {
      constrain}};
 const v3_plugin_view_content_scale_cpp scaling = {unknown_view<SCALING>(), {set_scale}};
 const v3_timer_handler_cpp timer = {unknown_view<TIMER>(), {on_timer}};
+const v3_event_handler_cpp events = {unknown_view<EVENTS>(), {on_event}};
 
 } /* namespace */
 
 v3_plugin_view **make_view(Vst3 &plugin) {
     void *memory = malloc(sizeof(View));
     if (!memory) return nullptr;
-    View *made = new (memory) View{{&view_table, &scaling, &timer}, {1}, &plugin, nullptr, nullptr,
+    View *made = new (memory) View{{&view_table, &scaling, &timer, &events}, {1}, &plugin, nullptr, nullptr,
                                    {plugin.instrument, {memory, edit, resize}}};
     plugin.references++;
     return (v3_plugin_view **)&made->tables[VIEW];

@@ -27,6 +27,8 @@ public:
     void poll();
     /* Whether the system calls `Editor::tick`; else a timer of the host has to. */
     static bool has_timer();
+    /* The file that can be read when something has happened, for hosts that wait for it; or -1. */
+    int file() const;
 
 private:
     struct Native;

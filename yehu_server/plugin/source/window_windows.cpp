@@ -37,6 +37,8 @@ struct Window::Native {
 
 bool Window::has_timer() { return true; }
 
+int Window::file() const { return -1; }
+
 bool Window::open(Editor &editor, uintptr_t parent, int width, int height) {
     if (native) return false;
     HMODULE self = nullptr; /* this library: others of its kind may be loaded */

@@ -25,7 +25,7 @@ constexpr int LEFT_BUTTON = 1, WHEEL_UP = 4, WHEEL_DOWN = 5;
     each(poll_for_event) each(set_input_focus) each(get_keyboard_mapping)                          \
     each(get_keyboard_mapping_reply) each(get_keyboard_mapping_keysyms)                            \
     each(get_keyboard_mapping_keysyms_length) each(intern_atom) each(intern_atom_reply)            \
-    each(change_property)
+    each(change_property) each(get_file_descriptor)
 
 struct Xcb {
 #define MEMBER(name) decltype(&xcb_##name) name;
@@ -85,6 +85,8 @@ void Window::Native::make_picture(int width, int height) {
 }
 
 bool Window::has_timer() { return false; }
+
+int Window::file() const { return native ? native->x->get_file_descriptor(native->connection) : -1; }
 
 bool Window::open(Editor &editor, uintptr_t parent, int width, int height) {
     const Xcb *x = library();

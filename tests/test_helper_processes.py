@@ -1,8 +1,10 @@
 """Helper processes: the modules that they find, and what is done when one has ended."""
 
+import json
 import multiprocessing
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,14 @@ from yehu_server.util import processes
 from yehu_server.util.processes import Supervisor, python_command
 from yehu_server.util.retry import Backoff
 
+READS = """
+import os
+from yehu_server.util.processes import Parent
+parent = Parent()
+parent.send("input", read=os.read(0, 1).decode())
+for order in parent.orders():
+    parent.send("heard", **order)
+"""
 STRANGE = "open('ran', 'w')\nraise SystemExit('a strange module')\n"
 
 
@@ -37,6 +47,18 @@ def test_modules_of_the_current_folder_are_not_run(strange, capsys):
     process.join()
     assert process.exitcode == 0
     assert not (strange / "ran").exists()
+
+
+def test_a_library_that_asks_for_the_input_of_a_helper_finds_it_empty_and_does_not_wait():
+    # Windows lets nobody ask about a pipe that another thread reads [numpy issue 24290].
+    run = subprocess.run(
+        [sys.executable, "-c", READS],
+        input='{"order": "open"}\n', stdout=subprocess.PIPE, text=True, check=True,
+    )  # fmt: skip
+    assert [*map(json.loads, run.stdout.splitlines())] == [
+        {"event": "input", "read": ""},
+        {"event": "heard", "order": "open"},
+    ]
 
 
 def test_the_end_of_a_helper_is_acted_on_however_it_came(monkeypatch):

@@ -12,7 +12,8 @@ windows=$root/.venv-windows
 debian_windows_packages=(wine wine64)
 # Those that hold everywhere; the others start processes as forks, need JACK, or have not been tried.
 windows_tests=(tests/live/midi/test_routes.py tests/live/midi/test_systems.py tests/params tests/scores
-    tests/surfaces tests/test_config.py tests/test_files.py tests/test_renders.py tests/test_systems.py)
+    tests/surfaces tests/test_config.py tests/test_files.py tests/test_helper_processes.py tests/test_renders.py
+    tests/test_systems.py)
 export WINEPREFIX=$windows/prefix WINEDEBUG=-all WINEARCH=win64
 
 windows_setup() {
@@ -42,10 +43,10 @@ windows_install() {
 
     install_packages --target "$windows/tools" ziglang pefile || return
     install_packages --target "$windows/frozen" --no-deps --python-platform windows panda3d || return
-    mkdir -p "$python/DLLs"
-    cp -r "$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("stdlib"))')" "$python/Lib"
-    rm -rf "$python"/Lib/{site-packages,dist-packages,lib-dynload,test}
-    mkdir -p "$packages"
+    mkdir -p "$python/DLLs" "$packages"
+    # But for what others have installed there, which may be much.
+    find "$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("stdlib"))')" -mindepth 1 -maxdepth 1 \
+        ! -name '*-packages' ! -name lib-dynload ! -name test -exec cp -r -t "$python/Lib" {} +
     install_packages --target "$packages" --python-platform windows --require-hashes \
         --only-binary :all: -r requirements/dev.lock || return
     windows_libraries "$packages"

@@ -169,6 +169,11 @@ class Parent:
     def __init__(self) -> None:
         self._channel = os.dup(1)
         os.dup2(2, 1)  # what libraries print is no event
+        # On Windows a library that asks about its standard input, as numpy's do when they are
+        # loaded, waits until nobody reads that.
+        self._orders = os.fdopen(os.dup(0), "rb")
+        with Path(os.devnull).open("rb") as nothing:
+            os.dup2(nothing.fileno(), 0)
         self._sending = threading.Lock()
 
     def send(self, event: str, **details: Any) -> None:
@@ -182,7 +187,7 @@ class Parent:
 
     def orders(self) -> Iterator[Message]:
         """Yield the orders as they come, until the input ends."""
-        for line in sys.stdin.buffer:
+        for line in self._orders:
             yield json.loads(line)
 
 

@@ -160,6 +160,20 @@ def test_strokes_in_a_hurry_come_sooner_and_lighter():
     assert wrong == []
 
 
+def test_only_a_stroke_in_a_hurry_touches_the_outer_string_more_heavily_than_it_goes_on():
+    wrong = []
+    for key, since, heavier in ((74, 0.4, False), (74, 0.08, True), (67, 0.08, False)):
+        playing = Playing(variation=0.0, listening=0.0)
+        playing.on(key)
+        playing.play(since)
+        playing.off(key)
+        playing.on(key)
+        pressure = playing.play(0.08, "value")[0][:, SLOTS.bow_pressure]
+        if (pressure[0] > 1.3 * pressure[-1]) != heavier:
+            wrong.append((key, since, float(pressure[0] / pressure[-1])))
+    assert wrong == []
+
+
 def test_a_trill_beats_a_second_above_some_seven_times_a_second_and_a_mordent_once():
     bend = bends("trill", 2.0)
     assert set(np.round(bend, 6)) == {0.0, 2.0}

@@ -18,7 +18,13 @@ from yehu_server.core.player.parameter_indices import (
     PLAYING,
     PLUCK,
 )
-from yehu_server.core.player.phrasing import HURRIED_WEIGHT, INNER, USUAL_PHRASING, hurried
+from yehu_server.core.player.phrasing import (
+    HURRIED_TOUCH,
+    HURRIED_WEIGHT,
+    INNER,
+    USUAL_PHRASING,
+    hurried,
+)
 from yehu_server.core.player.velocity import (
     ATTACK_PRESSURE_MS,
     attack_pressure_factor,
@@ -148,12 +154,12 @@ def set_bow_pressure(p: Any, c: Any, pitch: float, is_sounding: bool) -> None:
 
 @compiled_exactly
 def set_attack_pressure(p: Any, c: Any) -> None:
-    """Begin a hard note with more pressure, and one on the inner string with less.
+    """Begin a hard or hurried note with more pressure, and one on the inner string with less.
 
     This applies to new strokes, and to slurred notes on the string that was at rest.
     """
     usual = p.sent[BOW.pressure]
-    begins, ms = attack_pressure_factor(p) * usual, ATTACK_PRESSURE_MS
+    begins, ms = attack_pressure_factor(p) * hurried(p, HURRIED_TOUCH) * usual, ATTACK_PRESSURE_MS
     if p.string == 0:
         lighter = max(INNER_ATTACK_FRACTION * usual, MIN_INNER_ATTACK)
         begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), INNER_ATTACK_MS

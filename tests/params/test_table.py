@@ -89,6 +89,8 @@ def test_the_engine_holds_its_rows_in_the_order_of_the_table():
 def test_a_near_miss_is_answered_with_what_was_meant(wrong, meant):
     with pytest.raises(ParameterError, match=rf"'{wrong}'.*did you mean {re.escape(meant)}\?"):
         find(wrong)
+    with pytest.raises(ParameterError, match=r"'wibble'; docs/parameters\.md has all"):
+        find("wibble")
 
 
 def test_a_setting_that_makes_no_sense_is_refused(subtests):

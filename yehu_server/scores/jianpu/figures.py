@@ -8,7 +8,6 @@ from yehu_server.scores.jianpu.scale import LOWEST_DO, MIDDLE_C
 from yehu_server.scores.score import DO_BY_FIFTHS
 from yehu_server.scores.written.layout import LETTERS, STEPS, Piece, key_alter, spelled
 from yehu_server.scores.written.notated import Span
-from yehu_server.scores.written.ornaments import Around, around_letter
 
 # Of a quarter: what a hemidemisemiquaver is, and where notes of tuplets may begin.
 FINEST = (16, 48, 80, 112)
@@ -39,14 +38,6 @@ def figure_of(pitch: float, fifths: int) -> tuple[str, int]:
     natural = 12 * (octave + 1) + STEPS[letter] + key_alter(letter, fifths)
     octaves = round((natural - MIDDLE_C - do - STEPS[degree]) / 12)
     return f"{'#' * sign if sign > 0 else 'b' * -sign}{degree + 1}", octaves
-
-
-def around_figure(pitch: float, fifths: int) -> Around:
-    """The intervals from the figure of a pitch to its neighbours in the key."""
-    letter, alter, octave = spelled(pitch, fifths)
-    return around_letter(
-        LETTERS[letter], octave, alter, lambda name, _: key_alter(LETTERS.index(name), fifths)
-    )
 
 
 def notatable_lengths(length: Fraction, piece: Piece) -> list[Fraction]:

@@ -11,9 +11,9 @@ from yehu_server.scores.jianpu.mark_words import THERE_AND_BACK
 from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.score import KeySignature, Metre
 from yehu_server.scores.written import notated
-from yehu_server.scores.written.notated import Mark, Note, OpenSpan, Sign, Span, Tempo
+from yehu_server.scores.written.notated import Mark, Note, Sign, Span, Tempo
 from yehu_server.scores.written.ornaments import filled
-from yehu_server.scores.written.words import Meaning
+from yehu_server.scores.written.words import Meaning, OpenSpan
 
 TREMOLO_NOTE = Fraction(1, 8)  # of a tremolo between two notes: a demisemiquaver
 MAX_TREMOLO_NOTES = 20_000

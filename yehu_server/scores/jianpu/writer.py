@@ -11,7 +11,7 @@ from yehu_server.scores.score import DO_BY_FIFTHS, nearest_key
 from yehu_server.scores.written import layout, notated
 from yehu_server.scores.written.layout import PageBar, Piece
 from yehu_server.scores.written.notated import Grace, Mark, Part, Span, Tempo, Written
-from yehu_server.scores.written.ornaments import filled
+from yehu_server.scores.written.ornaments import around_in, filled
 from yehu_server.scores.written.words import WRITTEN_CHANGES, words_of_sign
 
 BARS_A_LINE = 4
@@ -243,7 +243,9 @@ class _PartWriter:
             word = MARK_WORDS.get(mark)
             if word is None and mark.value is not None:  # nearly the same
                 word = MARK_WORDS.get(Mark(mark.name))
-                read = filled(Mark(mark.name), figures.around_figure(pitch, self._fifths))
+                letter, alter, octave = layout.spelled(pitch, self._fifths)
+                place = layout.LETTERS[letter], octave, alter
+                read = filled(Mark(mark.name), around_in(place, {}, self._fifths))
                 self._lost[f"{mark.name} {mark.value:g}"] += mark != read
             if mark.name == "tremolo" and word is None:  # three strokes are written at the figure
                 self._lost[f"tremolo {mark.value or 0:g}"] += mark.value != 3.0

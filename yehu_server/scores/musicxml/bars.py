@@ -8,11 +8,12 @@ from xml.etree.ElementTree import Element
 from yehu_server.errors import ScoreError
 from yehu_server.scores.musicxml.directions import DirectionReader
 from yehu_server.scores.musicxml.elements import tell
-from yehu_server.scores.musicxml.marks import VALUES, Alters, NoteMarks, around_in, number
+from yehu_server.scores.musicxml.marks import VALUES, NoteMarks, number
 from yehu_server.scores.musicxml.repeat_signs import RepeatSigns
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import SEMITONES
 from yehu_server.scores.written.notated import MAX_BEATS, MAX_NOTES, Mark
+from yehu_server.scores.written.ornaments import Alters, around_in
 from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
 from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
 from yehu_server.scores.written.voices import FINEST, RawBar, RawDirection, RawNote

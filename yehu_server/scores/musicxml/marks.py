@@ -8,9 +8,9 @@ from xml.etree.ElementTree import Element, SubElement
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.musicxml.elements import SCHEMA
 from yehu_server.scores.score import printable
-from yehu_server.scores.written.layout import LETTERS, key_alter, spelled
+from yehu_server.scores.written.layout import LETTERS, spelled
 from yehu_server.scores.written.notated import Mark
-from yehu_server.scores.written.ornaments import WAYS, Around, around_letter
+from yehu_server.scores.written.ornaments import WAYS, Alters, Around, around_in
 from yehu_server.scores.written.words import ARTICULATED
 
 ACCIDENTALS: Mapping[str, float] = {
@@ -70,24 +70,6 @@ def number(text: str | None, default: float = 0.0) -> float:
     except ValueError:
         return default
     return value if abs(value) < 1e9 else default
-
-
-Alters = dict[tuple[str, int], float]  # the accidentals of a bar, by letters and octaves
-
-
-def around_in(
-    place: tuple[str, int, float], alters: Alters, fifths: int, alter: float | None = None
-) -> Around:
-    """The intervals from a note, its letter, octave and accidental, to its neighbours in a bar.
-
-    `alter` is the accidental of both, where one is written over the ornament.
-    """
-
-    def alter_of(letter: str, octave: int) -> float:
-        own = alters.get((letter, octave)) if alter is None else alter
-        return key_alter(LETTERS.index(letter), fifths) if own is None else own
-
-    return around_letter(*place, alter_of)
 
 
 class NoteMarks:

@@ -218,27 +218,6 @@ class Span:
     value: float | None = None
 
 
-class OpenSpan:
-    """A span that words begin, put into `spans` when something, or `longest` quarters, ends it."""
-
-    def __init__(self, spans: list[Span], longest: Fraction | None = None) -> None:
-        self._spans, self._longest = spans, longest
-        self._open: tuple[str, Fraction] | None = None
-
-    def begin(self, name: str, beat: Fraction) -> None:
-        """Begin a span, and end the one before."""
-        self.end(beat)
-        self._open = name, beat
-
-    def end(self, beat: Fraction) -> None:
-        """End the span, if one is open."""
-        if self._open is not None and self._open[1] < beat:
-            name, begin = self._open
-            end = beat if self._longest is None else min(beat, begin + self._longest)
-            self._spans.append(Span(name, begin, end))
-        self._open = None
-
-
 @dataclass(frozen=True)
 class Sign:
     """A sign at a beat that holds from there on: a name of SIGNS."""

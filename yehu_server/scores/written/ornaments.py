@@ -6,7 +6,7 @@ from typing import NamedTuple
 from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.rubato import at_time
 from yehu_server.scores.slides import logistic
-from yehu_server.scores.written.layout import LETTERS, STEPS
+from yehu_server.scores.written.layout import LETTERS, STEPS, key_alter
 from yehu_server.scores.written.notated import Grace, Mark, Note
 
 GRACE_S = 0.085
@@ -31,6 +31,7 @@ MAX_POINTS = 3000
 WIDEST_BEND = 24.0  # semitones
 Curve = list[tuple[float, float]]
 Around = tuple[float, float]  # semitones to the notes above and below
+Alters = dict[tuple[str, int], float]  # the accidentals of a bar, by letters and octaves
 
 
 class Touch(NamedTuple):
@@ -68,6 +69,21 @@ def around_letter(
 
     at = LETTERS.index(letter)
     return around(at, STEPS[at] + alter, pitch_of)
+
+
+def around_in(
+    place: tuple[str, int, float], alters: Alters, fifths: int, alter: float | None = None
+) -> Around:
+    """The intervals from a note, its letter, octave and accidental, to its neighbours in a bar.
+
+    `alter` is the accidental of both, where one is written over the ornament.
+    """
+
+    def alter_of(letter: str, octave: int) -> float:
+        own = alters.get((letter, octave)) if alter is None else alter
+        return key_alter(LETTERS.index(letter), fifths) if own is None else own
+
+    return around_letter(*place, alter_of)
 
 
 def filled(mark: Mark, intervals: Around) -> Mark:

@@ -11,9 +11,10 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from yehu_server.scores.written import notated
-from yehu_server.scores.written.notated import Grace, Mark, Note, OpenSpan, Part, Sign, Span
+from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Sign, Span
 from yehu_server.scores.written.ornaments import HALF, WHOLE, Around, filled
 from yehu_server.scores.written.repeats import BarLines
+from yehu_server.scores.written.words import OpenSpan
 
 FINEST = 1 << 24  # the smallest part of a quarter note is this one
 # Where a tempo is from: of several at one beat the highest counts. What a program plays goes over

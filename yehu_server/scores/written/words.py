@@ -3,8 +3,10 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 from yehu_server.params.articulations import ARTICULATIONS
+from yehu_server.scores.written.notated import Span
 
 # Words and their beginnings, as signs of `notated`. The first that fits counts.
 SIGNS: tuple[tuple[str, tuple[str, float | None]], ...] = (
@@ -102,3 +104,24 @@ def words_of_sign(name: str, value: float | None) -> str | None:
         return WRITTEN_SIGNS[name, value]
     own = (text for text, sign in ARTICULATED.items() if sign == (name, value))
     return next((text for text in own if meaning_of(text) == Meaning("sign", name, value)), None)
+
+
+class OpenSpan:
+    """A span that words begin, put into `spans` when something, or `longest` quarters, ends it."""
+
+    def __init__(self, spans: list[Span], longest: Fraction | None = None) -> None:
+        self._spans, self._longest = spans, longest
+        self._open: tuple[str, Fraction] | None = None
+
+    def begin(self, name: str, beat: Fraction) -> None:
+        """Begin a span, and end the one before."""
+        self.end(beat)
+        self._open = name, beat
+
+    def end(self, beat: Fraction) -> None:
+        """End the span, if one is open."""
+        if self._open is not None and self._open[1] < beat:
+            name, begin = self._open
+            end = beat if self._longest is None else min(beat, begin + self._longest)
+            self._spans.append(Span(name, begin, end))
+        self._open = None

@@ -121,6 +121,22 @@ def test_what_cannot_be_learned_or_shown_is_reported(duo, refused):
     assert not any(player.learning.waits for player in duo.players)
 
 
+def test_what_is_replaced_by_another_ends_and_leaves_that_one(server, at, command):
+    def begin_another() -> None:
+        until(lambda: server.player.learning.waits)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as hand:
+            packet = pack("/yehu/learn", "/output/gain")
+            hand.sendto(packet, ("127.0.0.1", server.osc.port))
+
+    other = threading.Thread(target=begin_another)
+    other.start()
+    status, _, error = command("learn", "vibrato", *at)
+    assert status == 2
+    assert "something else is learned now" in error
+    other.join()
+    assert server.player.learning.waits
+
+
 def test_the_end_of_input_ends_the_questions(monkeypatch, capsys):
     def end(_question: str) -> str:
         raise EOFError  # Ctrl-D

@@ -9,7 +9,8 @@ import pytest
 from midi_files import midi_file, notes
 
 from yehu_server.cli.terminal import calibrating
-from yehu_server.playing.learn import LearnedSource, learn
+from yehu_server.playing.learn import learn
+from yehu_server.playing.learner import LearnedSource
 from yehu_server.playing.mapping import load, mapping_folder
 
 # What a folder of presets may hold.

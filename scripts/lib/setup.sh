@@ -16,6 +16,7 @@ root=$(CDPATH='' cd -P "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 venv=$root/.venv
 log=$venv/setup.log
 kinds=(run dev all) # each holds what those before it need
+pip_options=(--disable-pip-version-check --no-input --no-compile --progress-bar off)
 
 # What we need from Debian, to play live.
 debian_packages=(libportaudio2)
@@ -94,7 +95,7 @@ is_set_up() {
 # Whether .venv is whole, made at this place, and only out of date.
 is_reusable() {
     grep -qsF " $root/pyproject.toml" "$venv"/stamp-* || return
-    "$venv/bin/python" -I -m pip --version >/dev/null 2>&1
+    "$venv/bin/python" -I -c '' 2>/dev/null
 }
 
 # --- Python ------------------------------------------------------------------------------
@@ -106,7 +107,7 @@ find_python() {
     for candidate in "${python_candidates[@]}"; do
         case $("$candidate" -I -c "$python_probe" 2>/dev/null) in
             whole)
-                printf '%s\n' "$candidate"
+                command -v "$candidate" # a path: .venv's comes first in PATH later
                 return
                 ;;
             'no venv') without_venv=${without_venv:-$(python_version "$candidate")} ;;
@@ -154,7 +155,7 @@ install() (
     lock=requirements/$1.lock
     made_from=$(fingerprint)
     cd "$root" || exit
-    bring_uv
+    bring_uv "$2"
     settings=$(settings_of_pip "$2")
     install_packages --require-hashes --no-build-isolation -r "$lock"
     if ! is_set_up run; then # else it may be in use
@@ -170,11 +171,15 @@ install() (
     done
 )
 
-# Brings the locked uv, which installs in a fifth of pip's time, unless there is one.
+# Brings the locked uv, which installs in a fifth of pip's time, unless there is one: by the pip of
+# the Python given, if it has one, which saves .venv one of its own.
 bring_uv() {
     command -v uv >/dev/null && return
     locked uv requirements/dev.lock >"$venv/uv.lock"
-    pip_install --require-hashes -r "$venv/uv.lock" >"$log" 2>&1 </dev/null
+    set -- "${1:-$venv/bin/python}" "${pip_options[@]}" --require-hashes -r "$venv/uv.lock"
+    {
+        "$1" -I -m pip --python "$venv/bin/python" install "${@:2}" || pip_install "${@:2}"
+    } >"$log" 2>&1 </dev/null
 }
 
 # Installs by uv; by pip where uv cannot.
@@ -189,7 +194,7 @@ install_packages() {
 }
 
 pip_install() {
-    venv_pip --disable-pip-version-check --no-input install --no-compile --progress-bar off "$@"
+    venv_pip install "${pip_options[@]}" "$@"
 }
 
 # Runs .venv's pip. Where nothing else can install it, it comes of Python itself, which takes half

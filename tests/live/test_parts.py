@@ -16,7 +16,7 @@ from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import TABLE
 from yehu_server.playing import learn as learned
 from yehu_server.playing.bind import Bind
-from yehu_server.playing.learn import LearnedSource
+from yehu_server.playing.learner import LearnedSource
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import player_of

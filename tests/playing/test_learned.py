@@ -10,7 +10,8 @@ from curves import from_unit
 from yehu_server.cli import main
 from yehu_server.errors import MappingError, OutputError
 from yehu_server.params.table import TABLE
-from yehu_server.playing.learn import LearnedSource, added, changes, learn, others, unlearn
+from yehu_server.playing.learn import added, changes, learn, others, unlearn
+from yehu_server.playing.learner import LearnedSource
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 
 KNOB = LearnedSource("cc 20")

@@ -2,7 +2,7 @@
 
 import mido
 
-from yehu_server.playing.learn import Learner
+from yehu_server.playing.learner import Learner
 
 
 def cc(control: int, *values: int, channel: int = 0) -> list[mido.Message]:

@@ -82,6 +82,8 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
                     print_result(f"  {others} still move{'s' * (', ' not in others)} it, too")
                 _print_binds(lost, "no longer, until --forget")
                 return
+            if message.address == f"{own}/learning":
+                raise ParameterError("something else is learned now; nothing was moved for this")
     except KeyboardInterrupt:
         client.send(f"{own}/learn")
         raise

@@ -5,10 +5,12 @@ thirds of the time.
 """
 
 import contextlib
+from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
-from numba.core import base, byteflow, event, ir, targetconfig, types
+from numba.core import base, byteflow, errors, event, ir, targetconfig, types
 from numba.core.types.functions import BaseFunction
+from numba.core.typing.context import BaseContext
 
 _resolve = BaseFunction.get_call_type
 
@@ -75,6 +77,25 @@ def _size_once(context: Any, kind: Any) -> int:
     return _sizes[name]
 
 
+_resolve_value = BaseContext.resolve_value_type
+
+
+def _resolve_value_at_once(context: Any, value: Any) -> Any:
+    """The type of a value: of functions and modules, which numba looks for last, after an error."""
+    if isinstance(value, BuiltinFunctionType | FunctionType | ModuleType):
+        found = context._get_global_type(value)  # noqa: SLF001
+        if found is not None:
+            return found
+    return _resolve_value(context, value)
+
+
+class _Colourless:
+    """No colours for errors: there are thousands that nobody reads; each asked the terminal."""
+
+    def __getattr__(self, _what: str) -> type[str]:
+        return str
+
+
 def _ignore_event(*_arguments: Any, **_named: Any) -> None:
     """Replace events, some for each call of LLVM, and a log, which nothing reads."""
 
@@ -87,6 +108,8 @@ for _owner, _name, _instead in (
     (BaseFunction, "get_call_type", _resolve_once),
     (ir.Inst, "_rec_list_vars", _list_variables),
     (base.BaseContext, "get_abi_sizeof", _size_once),
+    (BaseContext, "resolve_value_type", _resolve_value_at_once),
+    (errors, "_termcolor_inst", _Colourless()),
     # The name of a record has thousands of letters, put together again each time.
     (types.Record, "__repr__", lambda record: record.name),
     (event, "start_event", _ignore_event),

@@ -22,7 +22,7 @@ from yehu_server.core.player import commands
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.preset_file import Preset
 from yehu_server.params.table import SLOT, TABLE, find
-from yehu_server.playing.learn import Learning
+from yehu_server.playing.learner import Learning
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.part_state import UNMAPPED, Key, PartState, within_midi
 from yehu_server.playing.preset_folders import Presets

@@ -3,11 +3,12 @@
 import mido
 import pytest
 from midi_input import receive
+from wire import FakePeer
 
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc import context, learn_calls
-from yehu_server.playing import learn
-from yehu_server.playing.learn import LearnedSource
+from yehu_server.playing import learn, learner
+from yehu_server.playing.learner import LearnedSource
 from yehu_server.playing.mapping import load
 
 
@@ -18,7 +19,7 @@ def _own_settings(config_home):
 
 @pytest.fixture(autouse=True)
 def _clock(monkeypatch, still_time):
-    for module in (learn, learn_calls):
+    for module in (learner, learn_calls):
         monkeypatch.setattr(module, "time", still_time)
 
 
@@ -47,6 +48,17 @@ def test_what_is_moved_next_moves_the_parameter_from_then_on(still, address):
     turn(still, 21, 0, 127)  # only one thing is learned
     assert still.player.mapping == load("keyboard", user_first=True)
     assert not still.player.mapping.of("cc 21")
+
+
+def test_who_waits_is_told_that_another_learns_now(still, wire):
+    first = FakePeer(2)
+    still.take(wire.message("/yehu/learn", "vibrato"), first)
+    first.received()
+    assert answers(still.ask("/learn", "/output/gain"), "/learning") == [["/yehu/output/gain"]]
+    assert answers(first.received(), "/learning") == [[""]]
+    turn(still, 20, 10, 20, 64)
+    assert answers(first.received(), "/learned") == []
+    assert answers(still.peer.received(), "/learned")[0][0] == "/yehu/output/gain"
 
 
 def test_a_fader_learns_the_range_that_it_moves_through(still, wire, subtests):

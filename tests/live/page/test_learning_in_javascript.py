@@ -11,7 +11,7 @@ from live.page.bound import placeless, rows_of
 from live.page.streams import FREE
 
 from yehu_server.playing import learn
-from yehu_server.playing.learn import Learner
+from yehu_server.playing.learner import Learner
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 from yehu_server.playing.mapping_file import read_mapping_file
 

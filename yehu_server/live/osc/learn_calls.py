@@ -12,7 +12,7 @@ from yehu_server.live.osc.peers import Peer
 from yehu_server.live.part_addresses import check_own, part_of, split_group
 from yehu_server.params.table import PREFIX, UNIT, full_address
 from yehu_server.playing import learn
-from yehu_server.playing.learn import LearnedSource
+from yehu_server.playing.learner import LearnedSource
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_file import settable_param
 from yehu_server.playing.sources import is_address
@@ -45,7 +45,7 @@ class LearnCalls(GroupCalls):
                 learned = partial(self._learned, call.peer, target, source, soft, only)
                 self._write(call.peer, "/learn", learned)
 
-        self._player.learning.listen(found)
+        self._player.learning.listen(found, partial(self._send, call.peer, "/learning", ""))
         self._send(call.peer, "/learning", self._prefix + target)
 
     def _learned(

@@ -23,7 +23,7 @@ from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.preset_file import SAVED, Preset
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, TABLE
-from yehu_server.playing import learn, sources
+from yehu_server.playing import learner, sources
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
 from yehu_server.playing.mapping import Mapping as ControllerMapping
@@ -147,7 +147,7 @@ def facts(notes: NoteRange = YEHU) -> dict[str, Any]:
         },
         "codes": {**WORDS, "PAIR": tables.PAIR, "NRPN": tables.NRPN},
         "curves": {curve.value: code for curve, code in CURVES.items()},
-        "learner": {"DISTANCE": learn.DISTANCE, "AT_REST": dict(learn.AT_REST)},
+        "learner": {"DISTANCE": learner.DISTANCE, "AT_REST": dict(learner.AT_REST)},
         "interpreter": interpreter_layout(),
         "mappings": {name: mapping(load(name)) for name in shipped_mappings()},
         "defaultMapping": DEFAULT,

@@ -111,10 +111,10 @@ def near_address(address: str, known: Collection[str], *, prefix: str = "") -> s
         begun = [each for each in {*known, *groups} if each.startswith(path)]
         begun = [each for each in begun if "/" not in each[len(path) :]]
         found += sorted(begun, key=lambda each: (len(each), each))[:1]
-    if not found and name == path:
-        names = {each.rpartition("/")[2]: each for each in reversed([*known])}
-        found = [names[each] for each in _near(name, names)]
     found = found or [each for each in [_like_part_by_part(path, known)] if each]
+    if not found and own == f"/{name}":
+        names = {each.rpartition("/")[2]: each for each in reversed([*known])}
+        found = [names[each] for each in _near(name, names, 0.8)]
     return _hint([each if each in known else f"{each}/..." for each in dict.fromkeys(found)])
 
 

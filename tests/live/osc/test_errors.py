@@ -67,6 +67,7 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/position", [(0.5,)], "did you mean /yehu/bow/position or /yehu/finger/1/position?"),
     ("/stop", [NOTHING], "did you mean /yehu/panic or /yehu/record/stop?"),
     ("/note/on", [(67, 90)], "did you mean /yehu/note?"),
+    ("/volum", [(0.5,)], "did you mean /yehu/playing/volume?"),
     ("/slide", [(67,)], "did you mean /yehu/pitch?"),
     ("/aftertouch", [(0.5,)], "did you mean /yehu/playing/press?"),
     ("/part/two/note", [(67, 90)], "a part is a number: /yehu/part/1/..."),

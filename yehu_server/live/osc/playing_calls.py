@@ -1,6 +1,7 @@
 """The OSC calls that play a part: parameters, notes, values and subscriptions."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from yehu_server.errors import RefusedError
 from yehu_server.live import traffic_limits as limits
@@ -24,6 +25,7 @@ CHOSEN = "/playing/articulation"
 NOTE = Argument("note", lo=0.0, hi=127.0, unit=MIDI_NOTE)
 VELOCITY = Argument("velocity", lo=0.0, hi=127.0)
 ARTICULATION = Argument("articulation", "s", choices=tuple(one.name for one in ARTICULATIONS))
+plays = partial(osc_call, takes_patterns=True)  # a call that patterns reach
 SECONDS = Argument("seconds", lo=0.0, hi=LONGEST_SUBSCRIPTION_S, unit="s")
 
 
@@ -84,7 +86,7 @@ class PartCalls(GroupCalls):
 
     # -- playing -----------------------------------------------------------------------------
 
-    @osc_call("/note", "Begins a note; velocity 0 ends it.", NOTE, VELOCITY, takes_patterns=True)
+    @plays("/note", "Begins a note; velocity 0 ends it.", NOTE, VELOCITY)
     def _note(self, call: Request) -> None:
         note, velocity = call.numbers(2)
         if velocity == 0.0:
@@ -109,58 +111,37 @@ class PartCalls(GroupCalls):
             told.add((peer, address))
             self._clients.send(peer, pack(f"{PREFIX}/moved", address, what))
 
-    @osc_call("/note/off", "Ends a note.", NOTE, takes_patterns=True)
+    @plays("/note/off", "Ends a note.", NOTE)
     def _note_off(self, call: Request) -> None:
         self._player.key_off(call.numbers(1, 2)[0], frame=call.frame)
 
-    @osc_call(
-        "/pitch",
-        "Slides the finger to a pitch: the sounding note's, or the next.",
-        NOTE,
-        takes_patterns=True,
-    )
+    @plays("/pitch", "Slides the finger to a pitch: the sounding note's, or the next.", NOTE)
     def _pitch(self, call: Request) -> None:
         pitch = within_midi("pitch", call.numbers(1)[0])
         accepted = self._player.slide(pitch, frame=call.frame)
         if accepted != pitch:
             self._tell_moved(call.peer, "/pitch", pitch, f"the finger goes to {accepted:g}")
 
-    @osc_call(
+    @plays(
         "/bow",
         "Draws the bow by hand; no speed and no force lifts it.",
         like("/bow/speed", "speed"),
         like("/bow/force", "force"),
-        takes_patterns=True,
     )
     def _bow(self, call: Request) -> None:
         speed, force = call.numbers(2)
         self._player.draw(speed, force, frame=call.frame)
         self._echo(call.peer, ["/bow/speed", "/bow/force"])
 
-    @osc_call(
-        "/bend",
-        "Slides the finger away from the note.",
-        like("/playing/bend", "semitones"),
-        takes_patterns=True,
-    )
+    @plays("/bend", "Slides the finger away from the note.", like("/playing/bend", "semitones"))
     def _bend(self, call: Request) -> None:
         self.set(call, "/playing/bend")
 
-    @osc_call(
-        "/press",
-        "How hard the finger presses the string.",
-        like("/playing/press", "newtons"),
-        takes_patterns=True,
-    )
+    @plays("/press", "How hard the finger presses the string.", like("/playing/press", "newtons"))
     def _press(self, call: Request) -> None:
         self.set(call, "/playing/press")
 
-    @osc_call(
-        "/articulation",
-        "Chooses what both hands do in the next notes.",
-        ARTICULATION,
-        takes_patterns=True,
-    )
+    @plays("/articulation", "Chooses what both hands do in the next notes.", ARTICULATION)
     def _articulation(self, call: Request) -> None:
         if len(call.arguments) == 1 and isinstance(call.arguments[0], int | float):
             raise RefusedError(
@@ -170,10 +151,9 @@ class PartCalls(GroupCalls):
         self._player.set(CHOSEN, number, frame=call.frame)
         self._echo(call.peer, [CHOSEN])
 
-    @osc_call(
+    @plays(
         "/release",
         "Gives the bow and fingers that you moved directly back to the player (no time).",
-        takes_patterns=True,
     )
     def _release(self, call: Request) -> None:
         if call.is_let_go:

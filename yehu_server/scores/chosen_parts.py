@@ -27,6 +27,7 @@ from yehu_server.scores.written.in_range import line_of
 from yehu_server.scores.written.notated import Written, listed
 
 MELODIC = frozenset(range(16)) - {PERCUSSION_CHANNEL}
+DRUMS = "channel 10 is percussion: its keys name drums, and are played as pitches"
 MAX_NAMED = 8  # parts in a line
 ONE_BY_ONE = "--part NAME plays one of them, --ensemble all, each on a yehu of its own"
 
@@ -155,6 +156,8 @@ def midi_in_range(
             own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
             by_place[place] = by_part.setdefault("" if is_mpe else own_name, [])
         by_place[place].append(note)
+    if not is_mpe and any(note.channel == PERCUSSION_CHANNEL for note in notes):
+        score = replace(score, remarks=(*score.remarks, DRUMS))
     struck = np.zeros(len(events) + 1, bool)  # of each event; -1 is none
     struck[_column(notes, "begins")] = struck[-1] = True
     moves = np.zeros(len(events), np.int64)  # octaves, of each event
@@ -162,7 +165,7 @@ def midi_in_range(
     for name, own in by_part.items():
         spans = [(n.start_s, n.end_s, (n.key + tuned.get(n.begins, 0.0),)) for n in own]
         octaves = octaves_of([*map(NoteSpan._make, spans)], REST_S, within)
-        if octaves.summary:
+        if octaves.summary and (is_mpe or own[0].channel in MELODIC):
             parts.append((name, octaves))
         by, keys = np.array(octaves.of_notes), _column(own, "key")
         by[(keys + 12 * by < 0) | (keys + 12 * by > 127)] = 0

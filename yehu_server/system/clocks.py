@@ -12,9 +12,7 @@ monotonic_ns = time.perf_counter_ns if sys.platform == "win32" else time.monoton
 # Clocks of clock_gettime. `monotonic_ns` reads the first.
 MONOTONIC, THREAD_CPU = (8, 16) if sys.platform == "darwin" else (1, 3)
 NS = 1_000_000_000  # in a second
-FILETIME_NS = 100
-THIS_THREAD = -2  # what Windows' GetCurrentThread returns, always
-WINDOWS_CLOCKS = ("QueryPerformanceCounter", "QueryPerformanceFrequency", "GetThreadTimes")
+WINDOWS_CLOCKS = ("QueryPerformanceCounter", "QueryPerformanceFrequency")
 
 
 def provide() -> None:
@@ -33,8 +31,11 @@ def monotonic_code(builder: Any) -> Any:
 
 
 def thread_cpu_code(builder: Any) -> Any:
-    """Generate code that reads the CPU time of its thread (ns; Windows: in steps of 16 ms)."""
-    return _thread_times(builder) if sys.platform == "win32" else _posix(builder, THREAD_CPU)
+    """Generate code that reads the CPU time of its thread (ns).
+
+    On Windows, `monotonic_ns`: there CPU time has steps of 16 ms, longer than most deadlines.
+    """
+    return _counter(builder) if sys.platform == "win32" else _posix(builder, THREAD_CPU)
 
 
 def _posix(builder: Any, number: int) -> Any:
@@ -53,7 +54,7 @@ def _counter(builder: Any) -> Any:
 
     word = ir.IntType(64)
     read = []
-    for name in WINDOWS_CLOCKS[:2]:
+    for name in WINDOWS_CLOCKS:
         place = _place(builder, ir.ArrayType(word, 1))
         _call(builder, name, place)
         read.append(_load(builder, place, 0))
@@ -62,17 +63,6 @@ def _counter(builder: Any) -> Any:
     whole = builder.mul(builder.sdiv(ticks, per_second), second)
     rest = builder.mul(builder.srem(ticks, per_second), second)
     return builder.add(whole, builder.sdiv(rest, per_second))
-
-
-def _thread_times(builder: Any) -> Any:
-    from llvmlite import ir
-
-    word = ir.IntType(64)
-    times = [_place(builder, ir.ArrayType(word, 1)) for _ in ("created", "ended", "kernel", "user")]
-    thread = builder.inttoptr(ir.Constant(word, THIS_THREAD), times[0].type)
-    _call(builder, WINDOWS_CLOCKS[2], thread, *times)
-    kernel, user = (_load(builder, times[index], 0) for index in (2, 3))
-    return builder.mul(builder.add(kernel, user), ir.Constant(word, FILETIME_NS))
 
 
 def _place(builder: Any, kind: Any) -> Any:

@@ -14,6 +14,7 @@ const APART = 0.55; // of the neck's half width: each string from the middle
 const LABELS = 66; // px at the soft side, with the names of notes
 const GRAINS = 5;
 const MIN_FOR_SOFT = 340; // px across: else a button is there
+const DIGIT = 19; // px, of a note in jianpu
 const KEY = 22; // px, the side of a printed key
 const BESIDE = 62; // px from the edge, where buttons for lower and higher notes stand
 
@@ -170,17 +171,20 @@ export function writeNotes({ context, surface, colours, fingerboard: { scale }, 
   const put = (/** @type {number} */ beside) => (isUpright ? beside : breadth - beside);
   context.textAlign = "center";
   context.textBaseline = "middle";
+  // Upright, a digit with its dots has to fit below that of the note a semitone lower.
+  const semitone = scale.placeOf(OPEN[0] + 1) - scale.placeOf(OPEN[0]);
+  const size = isUpright ? Math.min(DIGIT, 0.68 * Math.abs(semitone)) : DIGIT;
   for (const note of notesOf(scale)) {
     const along = board[0] + scale.placeOf(note);
     const open = OPEN.indexOf(note);
     context.fillStyle = open < 0 ? colours.ink : colours[open ? "outer" : "inner"];
     if (isDegree(note)) {
       const { digit, dots } = jianpu(note);
-      context.font = font(19, 650);
+      context.font = font(size, 650);
       write(digit, along, put(isUpright ? 16 : 40));
-      context.font = font(19, 700);
+      context.font = font(size, 700);
       for (let dot = 0; dot < Math.abs(dots); dot++) {
-        const away = dots > 0 ? -12 - 5 * dot : 13 + 5 * dot;
+        const away = (size / DIGIT) * (dots > 0 ? -11 - 4.6 * dot : 12 + 4.6 * dot);
         if (isUpright) write("·", along + away, 16);
         else write("·", along, put(40) + away);
       }

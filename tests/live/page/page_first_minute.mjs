@@ -20,6 +20,34 @@ function cut() {
     .map((element) => element.outerHTML.slice(0, 100));
 }
 
+/** Signs of the notes' names, upright, that touch that of another note; runs in the page. */
+async function touching() {
+  const { writeNotes } = await import("/pictures/wood.js");
+  const semitone = 22; // px, as on a phone
+  const context = document.createElement("canvas").getContext("2d");
+  const signs = [];
+  let note = 0;
+  const write = (text, along, across) => {
+    if (across !== 16) return;
+    const { actualBoundingBoxAscent: up, actualBoundingBoxDescent: down } =
+      context.measureText(text);
+    if (text !== "·") note++; // its dots follow
+    signs.push({ text, note, top: along - up, bottom: along + down });
+  };
+  const scale = {
+    length: 26 * semitone,
+    placeOf: (pitch) => semitone * (pitch - 64),
+    pitchAt: (place) => place / semitone + 64,
+  };
+  const surface = { board: [0, scale.length], breadth: 300, isUpright: true };
+  writeNotes({ context, surface, colours: {}, fingerboard: { scale }, keys: new Map(), write });
+  signs.sort((one, other) => one.top - other.top);
+  const close = signs.filter(
+    ({ note: own, top }, i) => own !== signs[i - 1]?.note && top < signs[i - 1]?.bottom + 0.5,
+  );
+  return { count: signs.length, close: close.map(({ text }) => text) };
+}
+
 export default async function (browser, url) {
   const { page, errors } = await open(browser, url);
   const found = { cut: {}, said: [] };
@@ -31,6 +59,7 @@ export default async function (browser, url) {
     found.upright[`${width}x${height}`] = await page.locator("#stage.down").count();
   }
   await page.setViewportSize({ width: 1440, height: 900 });
+  found.touching = await page.evaluate(touching);
   const touch = await fingersOf(page);
   const words = () => page.locator("#guide:not([hidden]) p[role=status]").allTextContents();
   found.invited = await page.locator("#invite").isVisible();

@@ -25,6 +25,11 @@ def test_the_page_fits_every_size_and_the_instrument_stands_where_there_is_heigh
     }  # fmt: skip
 
 
+def test_octave_dots_keep_clear_of_other_notes(found) -> None:
+    assert found["touching"]["count"] > 15 + 8  # digits and dots
+    assert found["touching"]["close"] == []
+
+
 def test_the_invitation_goes_with_the_first_touch_and_each_gesture_is_noticed(found) -> None:
     assert found["invited"]
     assert not found["invitedStill"]

@@ -71,19 +71,15 @@ class Param:
     is_shared: bool = False
 
     def clamped(self, value: float) -> float:
-        """Clamp a value to the range, and a discrete one to the nearest whole number.
-
-        Raises ParameterError where it is not finite.
-        """
+        """Clamp a value to the range; raises ParameterError where it is not finite."""
         try:
-            within = min(max(number(value), self.lo), self.hi)
-            return float(math.floor(within + TURNED_ON)) if self.is_choice else within
+            return min(max(number(value), self.lo), self.hi)
         except ParameterError as error:
             raise ParameterError(f"{self.address}: {error}") from None
 
     def within(self, value: Any) -> float:
         """A value within the range; a ParameterError, without the address, where it is none."""
-        return self.clamped(number(value, self.lo, self.hi, self.unit))
+        return number(value, self.lo, self.hi, self.unit)
 
     @property
     def range_text(self) -> str:

@@ -268,7 +268,6 @@ def assignment(text: str) -> tuple[str, float]:
         what = f"neither a number nor one of {', '.join(names)}" if names else "not a number"
         hint = did_you_mean(value, names)
         raise ParameterError(f"{param.address}: {value!r} is {what}{hint}") from None
-    accepted = param.clamped(number)
-    if not param.lo <= number <= param.hi:
+    if param.clamped(number) != number:
         raise ParameterError(f"{param.address}: {number:g} is not within {param.range_text}")
-    return param.address, accepted
+    return param.address, number

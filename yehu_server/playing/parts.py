@@ -43,7 +43,7 @@ WIDEST = 0.7  # pan of the outermost players; by ear: the room stays around them
 def section_size(playing: PlayingOptions) -> int:
     """How many players are asked for."""
     asked = dict(playing.mapping.start) | dict(playing.start) | dict(playing.settings)
-    return int(find(SECTION).clamped(asked.get(SECTION, 1.0)))
+    return round(find(SECTION).clamped(asked.get(SECTION, 1.0)))
 
 
 def part_specs(

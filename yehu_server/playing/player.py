@@ -164,7 +164,7 @@ class Player(PartState):
         accepted = param.clamped(value)
         index = INDEX[param.address]
         if index == SECTION:
-            accepted = min(accepted, float(self.players))
+            accepted = min(float(round(accepted)), float(self.players))
         with self._lock:
             if not hold and self.refuses(address):
                 accepted = self.value(address)

@@ -16,7 +16,7 @@ TABLE = [param for param in ALL if param.address != "/playing/section"]
 
 def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(still):
     for param in TABLE:
-        third = param.clamped(param.lo + (param.hi - param.lo) / 3.0)
+        third = param.lo + (param.hi - param.lo) / 3.0
         for sent, accepted in (
             *((param.hi, param.hi), (param.lo, param.lo), (third, third)),
             *((1e30, param.hi), (-1e30, param.lo), (param.default, param.default)),
@@ -32,12 +32,11 @@ def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(stil
 def test_every_parameter_also_answers_as_zero_to_one(still):
     for param in TABLE:
         at = param.address + "/unit"
-        quarter = param.to_unit(param.clamped(param.from_unit(0.25)))
-        for sent, accepted in ((1.0, 1.0), (0.0, 0.0), (0.25, quarter), (7.0, 1.0), (-7.0, 0.0)):
+        for sent, accepted in ((1.0, 1.0), (0.0, 0.0), (0.25, 0.25), (7.0, 1.0), (-7.0, 0.0)):
             sent_back = [("/yehu" + at, [pytest.approx(accepted, abs=1e-6)])]
             assert still.ask(at, sent) == sent_back
             assert still.ask("/get", at) == sent_back
-            assert still.player.value(param.address) == pytest.approx(param.from_unit(accepted))
+            assert still.player.value(param.address) == param.from_unit(accepted)
 
 
 def test_every_parameter_takes_any_number_and_refuses_what_is_none(still):
@@ -50,7 +49,7 @@ def test_every_parameter_takes_any_number_and_refuses_what_is_none(still):
         for value, tags in numbers:
             still.send(param.address, value, tags=tags)
             sent = f32(value) if tags == "f" else float(value)
-            assert still.player.value(param.address) == param.clamped(sent)
+            assert still.player.value(param.address) == min(max(sent, param.lo), param.hi)
         before = still.player.values()
         still.ask("/ping")  # all is sent
         still.clock.now += clients.FORGIVEN_S

@@ -61,7 +61,7 @@ def test_a_preset_reaches_the_host_and_is_not_undone_by_it(plugin):
     choose(plugin, "pizzicato")
     assert raw(plugin, "Pizzicato").raw_value == 1.0
     for _ in range(2):  # before each it sends all that it has
-        assert level_db(played(plugin)[20000:28000]) < bowed - 20.0
+        assert level_db(played(plugin)[20000:28000]) < bowed - 15.0  # it has died away
     raw(plugin, "Pizzicato").raw_value = 0.0
     assert raw(plugin, "Preset").string_value == "pizzicato, changed"
     assert level_db(played(plugin)[20000:28000]) > bowed - 3.0

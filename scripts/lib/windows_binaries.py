@@ -108,16 +108,8 @@ def link(name: str, source: str, imports: dict[str, tuple[str, ...]], *options: 
     for library, functions in imports.items():
         definitions = "\n".join([f"LIBRARY {library}.dll", "EXPORTS", *functions, ""])
         (work / f"{library}.def").write_text(definitions)
-        zig(
-            "dlltool",
-            "-m",
-            "i386:x86-64",
-            "-d",
-            f"{library}.def",
-            "-l",
-            f"{library}.lib",
-            work=work,
-        )
+        files = ("-d", f"{library}.def", "-l", f"{library}.lib")
+        zig("dlltool", "-m", "i386:x86-64", *files, work=work)
     (work / "code.c").write_text(source)
     flags = ("-target", "x86_64-windows-gnu", "-O1", "-fno-builtin")
     zig("cc", *flags, "-c", "code.c", "-o", "code.obj", work=work)

@@ -8,7 +8,6 @@ docs/parameters.md describes the values.
 """
 
 import argparse
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -17,8 +16,6 @@ from yehu_server.cli.arguments import add_action, add_actions, add_command, add_
 from yehu_server.cli.playing_options import add_presets_folder
 from yehu_server.cli.terminal import check_files, print_json, print_result, warn
 from yehu_server.params.table import find
-
-PLAYER = re.compile("/(playing|bow|finger|vibrato)/")
 
 
 def add_to(commands: Any) -> None:
@@ -52,12 +49,9 @@ def _list(arguments: argparse.Namespace) -> int:
         print_json(rows)
     else:
         width = max((len(preset.name) for preset in found), default=0)
-        # Rooms leave the player's values as they are.
-        rooms = [each for each in found if not any(map(PLAYER.match, each.values))]
-        sounds = [each for each in found if each not in rooms]
-        for title, group in (("sounds", sounds), ("rooms", rooms)):
+        for title, is_room in (("sounds", False), ("rooms", True)):
             print_result(f"{title}, with their MIDI programs:")
-            for each in group:
+            for each in (one for one in found if one.is_room is is_room):
                 about = f"{'your own: ' * presets.is_own(each.name)}{each.about}"
                 print_result(f"  {each.name:{width}}  {each.program or '-':>3}  {about}")
     for error in errors:

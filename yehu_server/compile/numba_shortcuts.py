@@ -8,7 +8,19 @@ import contextlib
 from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
-from numba.core import base, byteflow, errors, event, ir, targetconfig, types
+from numba import types
+from numba.core import (
+    base,
+    byteflow,
+    errors,
+    event,
+    ir,
+    lowering,
+    postproc,
+    targetconfig,
+    transforms,
+    typeinfer,
+)
 from numba.core.types.functions import BaseFunction
 from numba.core.typing.context import BaseContext
 
@@ -29,7 +41,7 @@ def _resolve_once(function: Any, context: Any, arguments: Any, named: Any) -> An
     Else each sum of two numbers is tried as one of strings, lists, sets, dates and arrays.
     """
     known = function.__dict__.setdefault("_known", {})
-    key = context, tuple(arguments), tuple(named.items()), _flags()
+    key = context, _without_values(function, arguments), tuple(named.items()), _flags()
     if key in known:
         signature, implementation = known[key]
         function._impl_keys[signature.args] = implementation  # noqa: SLF001
@@ -37,6 +49,21 @@ def _resolve_once(function: Any, context: Any, arguments: Any, named: Any) -> An
     signature = _resolve(function, context, arguments, named)
     known[key] = signature, function.get_impl_key(signature)
     return signature
+
+
+def _without_values(function: Any, arguments: Any) -> tuple[Any, ...]:
+    """The types of a function's arguments: of numbers without their values, if it goes by none.
+
+    It may go by them if all are known.
+    """
+    plain = tuple(types.unliteral(each) for each in arguments)
+    if (
+        all(isinstance(each, (types.Number, types.Boolean)) for each in plain)
+        and any(each is given for each, given in zip(plain, arguments, strict=True))
+        and not any(template.prefer_literal for template in function.templates)
+    ):
+        return plain
+    return tuple(arguments)
 
 
 _without_variables: set[type] = set()
@@ -89,6 +116,49 @@ def _resolve_value_at_once(context: Any, value: Any) -> Any:
     return _resolve_value(context, value)
 
 
+_find_function = base.BaseContext.get_function
+
+
+def _find_function_at_once(context: Any, function: Any, *arguments: Any, **named: Any) -> Any:
+    """An implementation: of arrays like another type of array, for all of which numba looks anew.
+
+    There are none; numba finds that out after two errors and a look at all of its modules.
+    """
+    if function == "__array__":
+        raise NotImplementedError
+    return _find_function(context, function, *arguments, **named)
+
+
+_process = postproc.PostProcessor.run
+
+
+def _process_last(processor: Any, emit_dels: bool = False, **named: Any) -> None:
+    """Find out how long variables live only where this is used: at last, to release them."""
+    if emit_dels or processor.func_ir.is_generator:
+        _process(processor, emit_dels, **named)
+    else:
+        of = processor.func_ir
+        of.blocks = transforms.canonicalize_cfg(of.blocks)
+
+
+_explain = lowering.new_error_context
+
+
+class _ErrorContext:
+    """Adds to an error what numba was at, as numba's own does: a generator for each operation."""
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        self._arguments, self._named = arguments, named
+
+    def __enter__(self) -> None:
+        """Do nothing yet."""
+
+    def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
+        if error is not None:
+            with _explain(*self._arguments, **self._named):
+                raise error
+
+
 class _Colourless:
     """No colours for errors: there are thousands that nobody reads; each asked the terminal."""
 
@@ -112,6 +182,10 @@ for _owner, _name, _instead in (
     (errors, "_termcolor_inst", _Colourless()),
     # The name of a record has thousands of letters, put together again each time.
     (types.Record, "__repr__", lambda record: record.name),
+    (base.BaseContext, "get_function", _find_function_at_once),
+    (postproc.PostProcessor, "run", _process_last),
+    (lowering, "new_error_context", _ErrorContext),
+    (typeinfer, "new_error_context", _ErrorContext),
     (event, "start_event", _ignore_event),
     (event, "end_event", _ignore_event),
     (event, "trigger_event", _no_event),

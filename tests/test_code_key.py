@@ -8,17 +8,18 @@ import tokenize
 import types
 from pathlib import Path
 
+import pytest
+
+import yehu_lab.regimes  # noqa: F401 - it registers what it compiles
 from yehu_server.compile import function_cache as cache
 from yehu_server.compile import jit, numba_compiler
-from yehu_server.compile.cache_folder import SOURCE_FOLDERS
+from yehu_server.compile.cache_folder import sources
 from yehu_server.util import PACKAGE
 from yehu_server.util.source_key import key_of, without_comments
 
-KEYED = [
-    path
-    for folder in (*SOURCE_FOLDERS, "playing")
-    for path in sorted((PACKAGE / folder).rglob("*.py"))
-]
+KEYED = [*sources(), *sorted((PACKAGE / "playing").rglob("*.py"))]
+MAKERS = ("compiled", "native", "Native", "arithmetic", "intrinsic")
+COMPILERS = {(jit.__name__, name) for name in vars(jit) if name.startswith(MAKERS)}
 LAYOUT = {
     tokenize.ENCODING,
     tokenize.COMMENT,
@@ -56,6 +57,53 @@ def docstrings(source: str) -> frozenset[tuple[int, int]]:
         if isinstance(node, kinds) and ast.get_docstring(node) is not None
     ]
     return frozenset((node.lineno, node.col_offset) for node in found)
+
+
+@pytest.mark.parametrize("package", ["yehu_server", "yehu_lab"])
+def test_the_key_is_of_all_that_compiled_functions_come_from_and_name(package):
+    files = (PACKAGE.parent / package).rglob("*.py")
+    used = {path: compiled_from(path) for path in files}
+    assert sum(map(len, used.values())) > 0
+    assert {path for paths in used.values() for path in paths} <= {*sources(package)}
+
+
+def compiled_from(path: Path) -> set[Path]:
+    """Where a module's compiled functions come from, and what they name, also by its constants.
+
+    Empty where it has no such function.
+    """
+    statements = ast.parse(path.read_bytes()).body
+    origins: dict[str, tuple[str, str]] = {}
+    named: dict[str, set[str]] = {}  # by the names that statements define
+    ahead: list[str] = []
+    for statement in statements:
+        nodes = [*ast.walk(statement)]
+        names = [node for node in nodes if isinstance(node, ast.Name)]
+        own = {name.id for name in names if isinstance(name.ctx, ast.Store)}
+        for name in {statement.name} if hasattr(statement, "name") else own:
+            named.setdefault(name, set()).update(name.id for name in names)
+        for node in nodes:
+            if isinstance(node, ast.ImportFrom):
+                module = node.module or ""
+                origins |= {each.asname or each.name: (module, each.name) for each in node.names}
+            for maker in getattr(node, "decorator_list", [getattr(node, "func", None)]):
+                if origins.get(getattr(maker, "id", "")) in COMPILERS:
+                    ahead += [name.id for name in names]
+    found, seen = {path} if ahead else set(), set()
+    while ahead:
+        name = ahead.pop()
+        if name not in seen:
+            seen.add(name)
+            ahead += named.get(name, ())
+            found |= file_of(*origins.get(name, ("", "")))
+    return found
+
+
+def file_of(module: str, name: str) -> set[Path]:
+    """The file of a module's name, or of the module of this name; empty if it is not of ours."""
+    place = PACKAGE.parent.joinpath(*module.split("."))
+    files = (place / f"{name}.py", place.with_suffix(".py"), place / "__init__.py")
+    return {*[file for file in files if file.exists()][:1]} if module.startswith("yehu_") else set()
 
 
 def test_comments_and_docstrings_are_left_out_and_nothing_else(subtests, everything):

@@ -1,8 +1,10 @@
 """What differs between systems stands in one package, and its forms for other systems fit."""
 
+import ctypes
 import re
 import sys
 import threading
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ from llvmlite import binding, ir
 from yehu_server.system import clocks, processes
 
 ROOT = Path(__file__).parents[1]
+HIGH_PRIORITY_CLASS = 0x80  # before most programs, after what has real time
 ASKS = re.compile(
     r"\bsys\.platform\b|\bos\.name\b|\bplatform\.system\b|hasattr\((?:os|signal|socket)\b"
     r"|import (?:fcntl|resource|msvcrt|readline)\b|\bos\.(?:getuid|nice|memfd_create)\b"
@@ -48,6 +51,46 @@ def test_on_windows_a_callback_is_not_timed_by_a_clock_with_steps_of_16_ms(monke
     builder.ret(clocks.thread_cpu_code(builder))
     assert "QueryPerformanceCounter" in str(module)
     assert "GetThreadTimes" not in str(module)
+
+
+@pytest.fixture
+def windows(monkeypatch) -> dict[str, Any]:
+    """What was asked of Windows' libraries, by the functions' names; they do as this test says."""
+    asked: dict[str, Any] = {"time": 0}
+
+    class Library:
+        def __init__(self, name: str) -> None:
+            self.name = name
+
+        def GetCurrentProcess(self) -> int:
+            return -1
+
+        def GetSystemTimePreciseAsFileTime(self, into: Any) -> None:
+            into._obj.value = asked["time"]
+
+        def __getattr__(self, name: str) -> Any:
+            return lambda *values: asked.update({f"{self.name}.{name}": values[-1]})
+
+    monkeypatch.setattr(sys, "platform", "win32")
+    monkeypatch.setattr(ctypes, "WinDLL", Library, raising=False)
+    return asked
+
+
+def test_on_windows_time_is_read_without_steps_of_16_ms(windows):
+    began = datetime(1601, 1, 1, tzinfo=UTC)
+    now = datetime(2026, 11, 29, 22, 0, 0, 123456, UTC)
+    windows["time"] = (now - began) // timedelta(microseconds=1) * 10
+    assert clocks.now_s() == pytest.approx(now.timestamp(), abs=1e-6)
+
+
+def test_on_windows_what_plays_comes_before_busy_programs_and_waits_no_16_ms(windows):
+    before = sys.getswitchinterval()
+    try:
+        processes.be_prompt()
+    finally:
+        sys.setswitchinterval(before)
+    assert windows["kernel32.SetPriorityClass"] == HIGH_PRIORITY_CLASS
+    assert windows["winmm.timeBeginPeriod"] == 1
 
 
 def test_on_windows_no_wait_keeps_handlers_of_signals_from_running(monkeypatch: pytest.MonkeyPatch):

@@ -24,7 +24,7 @@ from yehu_server.core.player.record import SILENT
 from yehu_server.errors import OutputError
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.options import PartOptions, ServeOptions
-from yehu_server.live.osc import clients, handler, schedule
+from yehu_server.live.osc import clients, handler
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.live.part_addresses import part_of
@@ -69,8 +69,8 @@ def peer() -> FakePeer:
 def still_time(monkeypatch) -> StillTime:
     clock = StillTime(time.monotonic() + 100.0)  # later than anything on the true clock
     monkeypatch.setattr(clocks, "monotonic_ns", clock.monotonic_ns)
-    for module in (clients, schedule, handler):
-        monkeypatch.setattr(module, "time", clock)
+    monkeypatch.setattr(clocks, "now_s", clock.time)
+    monkeypatch.setattr(clients, "time", clock)
     return clock
 
 

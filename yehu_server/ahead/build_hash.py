@@ -2,7 +2,6 @@
 
 import hashlib
 from functools import cache
-from pathlib import Path
 
 from yehu_server.compile.cache_folder import source_hash
 from yehu_server.util import PACKAGE
@@ -17,8 +16,7 @@ def build_hash() -> str:
         for name in ("calibrations.json", "practices.json")
     ]
     begun = [PACKAGE / "playing" / name for name in ("options.py", "tables.py")]  # memory's start
-    sources = [*sorted(Path(__file__).parent.glob("*.py")), *begun]
-    return key_of(sources, source_hash(is_shipped=True), *learnt)
+    return key_of(begun, source_hash(is_shipped=True), *learnt)
 
 
 NAME = b"yehu"

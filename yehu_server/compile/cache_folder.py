@@ -20,8 +20,8 @@ from yehu_server.util.source_key import key_of
 
 PREFIX, DIGIT = "compiled-", "[0-9a-f]"
 UNUSED_AFTER_S = 14 * 24 * 3600.0
-# Of all source that is compiled, or that compiled code reads constants of.
-SOURCE_FOLDERS = ("core", "params", "compile")
+# Of all source that is compiled, that makes code, or that compiled code reads constants of.
+SOURCE_FOLDERS = ("core", "params", "compile", "system", "ahead")
 others: dict[str, Path] = {}  # the same, of packages that use this one, by their names
 
 
@@ -40,11 +40,15 @@ def source_hash(package: str = "", *, is_shipped: bool = False) -> str:
     `package`: another one's name, for the key of its source and ours.
     `is_shipped`: of what a release brings, which is loaded without numba: with any version of it.
     """
+    return key_of(sources(package), "" if is_shipped else version("numba"))
+
+
+def sources(package: str = "") -> list[Path]:
+    """All source that `source_hash` is of."""
     folders = [PACKAGE / folder for folder in SOURCE_FOLDERS]
     if package in others:
         folders.append(others[package])
-    sources = [source for folder in folders for source in sorted(folder.rglob("*.py"))]
-    return key_of(sources, "" if is_shipped else version("numba"))
+    return [source for folder in folders for source in sorted(folder.rglob("*.py"))]
 
 
 def key_beside(module: str) -> str:

@@ -3,7 +3,6 @@
 import contextlib
 import gc
 import logging
-import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -36,8 +35,8 @@ from yehu_server.playing.delay import Delay
 from yehu_server.playing.parts import assemble, number_of_instruments, player_of, seated
 from yehu_server.playing.player import Player
 from yehu_server.scores.capture_writer import LiveCapture
+from yehu_server.system.processes import be_prompt
 from yehu_server.util.files import check_free, check_target, replace_any, replace_none
-from yehu_server.util.processes import SWITCH_INTERVAL_S
 
 log = logging.getLogger(__name__)
 Input = OscPorts | WebServer | Announcer | MidiPorts | Pages | VoiceInput
@@ -195,7 +194,7 @@ class Server:
         Raises DeviceError where a named device cannot be opened; OutputError where `record` or
         `capture` cannot be written.
         """
-        sys.setswitchinterval(SWITCH_INTERVAL_S)
+        be_prompt()
         gc.collect()
         gc.freeze()  # later collections skip all objects of now, which stay
         with contextlib.ExitStack() as undo:

@@ -12,7 +12,17 @@ monotonic_ns = time.perf_counter_ns if sys.platform == "win32" else time.monoton
 # Clocks of clock_gettime. `monotonic_ns` reads the first.
 MONOTONIC, THREAD_CPU = (8, 16) if sys.platform == "darwin" else (1, 3)
 NS = 1_000_000_000  # in a second
+TICK_NS, TICKS_TO_1970 = 100, 116_444_736_000_000_000  # of Windows, from 1601
 WINDOWS_CLOCKS = ("QueryPerformanceCounter", "QueryPerformanceFrequency")
+
+
+def now_s() -> float:
+    """The system's clock (s since 1970); `time.time` has steps of 16 ms there, too."""
+    if sys.platform != "win32":
+        return time.time()
+    ticks = ctypes.c_uint64()
+    ctypes.WinDLL("kernel32").GetSystemTimePreciseAsFileTime(ctypes.byref(ticks))
+    return (ticks.value - TICKS_TO_1970) * TICK_NS / NS
 
 
 def provide() -> None:

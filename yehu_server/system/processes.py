@@ -15,8 +15,11 @@ PIPE_BYTES = 1 << 20  # buffer for events while the parent is stopped
 F_SETPIPE_SZ = 1031  # of Linux
 LOWER, LOWEST = 5, 19  # niceness
 SIGNALS_EVERY_S = 0.1  # how often handlers of signals have their turn, on Windows
-# Of Windows: BELOW_NORMAL_PRIORITY_CLASS, IDLE_PRIORITY_CLASS.
+# Of Windows: BELOW_NORMAL_PRIORITY_CLASS, IDLE_PRIORITY_CLASS; and what goes before most programs.
 CLASSES = {LOWER: 0x4000, LOWEST: 0x40}
+HIGH_PRIORITY_CLASS, TIMER_MS = 0x80, 1
+# Python's threads take short turns, so that a busy one does not delay the others.
+SWITCH_INTERVAL_S = 0.0001
 SCREENS = {"DISPLAY", "WAYLAND_DISPLAY"}  # where a program with windows may open them
 
 
@@ -38,10 +41,26 @@ def enlarge_pipe(pipe: IO[bytes]) -> None:
 def lower_priority(by: int) -> None:
     """Let other processes go first: LOWER, or LOWEST."""
     if sys.platform == "win32":
-        kernel = ctypes.WinDLL("kernel32")
-        kernel.SetPriorityClass(ctypes.c_void_p(kernel.GetCurrentProcess()), CLASSES[by])
+        _set_class(CLASSES[by])
     else:
         os.nice(by)
+
+
+def be_prompt() -> None:
+    """Let threads of this process go on soon after what they wait for.
+
+    On Windows, beside busy programs, too, and after timeouts, else in steps of 16 ms.
+    """
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
+    if sys.platform == "win32":
+        _set_class(HIGH_PRIORITY_CLASS)
+        ctypes.WinDLL("winmm").timeBeginPeriod(TIMER_MS)
+
+
+def _set_class(priority: int) -> None:
+    if sys.platform == "win32":
+        kernel = ctypes.WinDLL("kernel32")
+        kernel.SetPriorityClass(ctypes.c_void_p(kernel.GetCurrentProcess()), priority)
 
 
 def allow_files(most: int) -> int | None:

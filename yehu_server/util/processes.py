@@ -29,8 +29,6 @@ Message = dict[str, Any]
 
 log = logging.getLogger(__name__)
 
-# Python's threads take short turns, so that a busy one does not delay the others.
-SWITCH_INTERVAL_S = 0.0001
 EXIT_S = 1.0  # for a process to end by itself
 LOCK_S = 300.0  # for a lock: longer than a slow machine compiles
 LOCK_EVERY_S = 0.05  # between two attempts

@@ -13,8 +13,7 @@ from fuzz.instrument import Instrument, check_silence, check_values
 from fuzz.target import Program, scratch, target
 from wire import SINCE_1900_S, FakePeer, StillTime
 
-from yehu_server.live.osc import clients, schedule
-from yehu_server.live.osc import handler as osc
+from yehu_server.live.osc import clients
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
@@ -70,9 +69,8 @@ def still_time() -> Iterator[StillTime]:
     shutil.rmtree(home, ignore_errors=True)
     with (
         patch.object(clients, "time", clock),
-        patch.object(schedule, "time", clock),
-        patch.object(osc, "time", clock),
         patch.object(clocks, "monotonic_ns", clock.monotonic_ns),
+        patch.object(clocks, "now_s", clock.time),
         patch.dict(os.environ, XDG_CONFIG_HOME=str(home)),
     ):
         yield clock

@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from yehu_server.live.midi import input_process
-from yehu_server.util.processes import SWITCH_INTERVAL_S
+from yehu_server.system.processes import SWITCH_INTERVAL_S
 
 
 def test_its_threads_take_short_turns_as_jack_waits_for_none(monkeypatch):

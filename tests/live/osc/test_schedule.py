@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from wire import FakePeer
 
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.osc import schedule
 from yehu_server.live.osc.schedule import AHEAD_S, Schedule, TagClock
+from yehu_server.system import clocks
 
 RATE = 48000
 MS = RATE // 1000
@@ -121,7 +121,7 @@ def test_being_held_up_while_reading_the_clocks_moves_nothing(still_time, monkey
         still_time.now += next(held_up, 0.0)
         return now
 
-    monkeypatch.setattr(schedule.time, "time", read)
+    monkeypatch.setattr(clocks, "now_s", read)
     first = type(still_time).time(still_time) + 0.5
     frames = []
     for number in range(5):

@@ -6,7 +6,6 @@ one takes its place.
 """
 
 import os
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -18,7 +17,8 @@ from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted
 from yehu_server.live.midi.systems import MidiSystem, open_system
 from yehu_server.system import clocks
 from yehu_server.system.memory import open_shared
-from yehu_server.util.processes import SWITCH_INTERVAL_S, Message, Parent
+from yehu_server.system.processes import be_prompt
+from yehu_server.util.processes import Message, Parent
 
 POLL_EVERY_S = 0.5
 SYSTEM_EVERY_S = 2.0  # between searches for a MIDI system, where there is none
@@ -204,7 +204,7 @@ def _feed(order: Message) -> MidiFeed:
 def main() -> None:
     """Serve the parent process until it closes the pipe."""
     # Messages come in threads that wait for others here, and JACK does not wait for them.
-    sys.setswitchinterval(SWITCH_INTERVAL_S)
+    be_prompt()
     parent = Parent()
     orders = parent.orders()
     order = next(orders)

@@ -4,7 +4,6 @@ The protocol is described in docs/osc.md.
 """
 
 import logging
-import time
 from collections.abc import Iterator
 from functools import partial
 
@@ -24,6 +23,7 @@ from yehu_server.playing.delay import Arrivals
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.player import SENDER
 from yehu_server.playing.sources import is_own
+from yehu_server.system import clocks
 
 log = logging.getLogger(__name__)
 
@@ -77,7 +77,7 @@ class OscHandler:
         `frame`: of one message that waited for its time; without it, the packet takes effect as
         it arrived, and its bundles at their times.
         """
-        now, is_late, is_due, is_first = time.time(), False, frame is not None, True
+        now, is_late, is_due, is_first = clocks.now_s(), False, frame is not None, True
         frame = self._arrivals.frame_of(arrived_ns) if frame is None else frame
         try:
             for message in steps(packet):
@@ -112,7 +112,7 @@ class OscHandler:
 
     def _keep(self, message: Message, peer: Peer) -> None:
         """Keep a message until its time; tell of a sender whose clock is far from this one."""
-        ahead_s = (message.due_s or 0.0) - time.time()
+        ahead_s = (message.due_s or 0.0) - clocks.now_s()
         if ahead_s > LONGEST_AHEAD_S:
             reason = f"its time is {ahead_s:.0f} s ahead, more than an hour: is the clock right?"
             self.context.send_error(peer, message.address, reason)

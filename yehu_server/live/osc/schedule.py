@@ -8,7 +8,6 @@ from that, a new pair of time and frame is taken.
 
 import heapq
 import itertools
-import time
 
 from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.peers import Peer
@@ -27,7 +26,7 @@ def both_clocks() -> tuple[float, int]:
     """The system's clock (s since 1970) and the monotonic clock (ns) at the same moment."""
     for _ in range(TRIES):
         before = clocks.monotonic_ns()
-        now_s = time.time()
+        now_s = clocks.now_s()
         if clocks.monotonic_ns() - before < SAME_MOMENT_NS:  # the thread was not held up in between
             break
     return now_s, before
@@ -80,7 +79,7 @@ class Schedule:
 
     def due(self) -> tuple[float, bytes, Peer] | None:
         """Remove and return the next message that is due now, with its time and peer."""
-        if not self._waiting or self._waiting[0][0] > time.time() + self.ahead_s:
+        if not self._waiting or self._waiting[0][0] > clocks.now_s() + self.ahead_s:
             return None
         due_s, _, packet, peer, size = heapq.heappop(self._waiting)
         self._shares.give_back(peer, size)
@@ -90,7 +89,7 @@ class Schedule:
         """Seconds until the next message is due; None where there is none."""
         if not self._waiting:
             return None
-        return max(0.0, self._waiting[0][0] - self.ahead_s - time.time())
+        return max(0.0, self._waiting[0][0] - self.ahead_s - clocks.now_s())
 
     def drop_part(self, group: str) -> None:
         """Drop the messages of a group of addresses; of `FIRST`, all."""

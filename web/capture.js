@@ -15,6 +15,7 @@ const MAX_COMMANDS = 1e6;
 const MAX_A_SECOND = 5000; // commands: two hands come to some hundreds
 const LONGEST_S = 24 * 3600;
 const EVERY = 60; // ms
+const RINGS_S = 1; // after its last command
 const { RAMP, WRITE, HOLD, EXPRESS, BEGIN, END, SLIDE, STOP, DRAW, RELEASE } = facts.kinds;
 /** Kinds of commands, by their numbers. */
 export const KINDS = Object.keys(facts.kinds);
@@ -223,7 +224,7 @@ function finite(value) {
   return value;
 }
 
-/** Plays a performance. Event: 'end'. */
+/** Plays a performance, in the sound that it brings; the one before is back at its end. Event: 'end'. */
 export class Replayer extends EventTarget {
   /** @param {Instrument} instrument @param {Performance} performance */
   constructor(instrument, { rate, values, commands }) {
@@ -233,8 +234,15 @@ export class Replayer extends EventTarget {
     this.next = 0;
     const own = instrument.sound?.status.rate ?? rate;
     this.ratio = own / rate;
-    for (const [address, value] of Object.entries(values)) instrument.player.write(address, value);
+    const { player } = instrument;
+    const written = commands.filter(({ kind }) => kind === WRITE).map(({ index }) => TABLE[index]);
+    const moved = [...Object.keys(values).map(find), ...written].filter((one) =>
+      FREE.includes(one),
+    );
+    /** What is given back. @type {Map<string, number>} */
+    this.before = new Map(moved.map(({ address }) => [address, player.value(address)]));
     this.begun = instrument.horizon;
+    for (const [address, value] of Object.entries(values)) player.write(address, value, this.begun);
     this.latest = 0; // frame of the last command that was posted
     /** Notes that sound, by key. @type {Map<string, Command>} */
     this.open = new Map();
@@ -249,7 +257,8 @@ export class Replayer extends EventTarget {
       this.#post(at, kind, index, value, other);
       this.latest = at;
     }
-    if (this.instrument.frame > this.latest) this.#end();
+    const { frame, rate } = this.instrument;
+    if (frame > this.latest + RINGS_S * rate) this.#end(frame);
   }
 
   /** @type {import('./interfaces.js').Post} */
@@ -257,7 +266,9 @@ export class Replayer extends EventTarget {
     const key = `${index} ${value}`;
     if (kind === BEGIN) this.open.set(key, { frame: 0, kind: END, index, value, other: 0 });
     else if (kind === END) this.open.delete(key);
-    this.instrument.post(frame, kind, index, value, other);
+    // The player knows of what it sets: all that shows parameters shows what sounds.
+    if (kind === WRITE) this.instrument.player.write(TABLE[index].address, value, frame, other);
+    else this.instrument.post(frame, kind, index, value, other);
   }
 
   /** End only what this plays: somebody else plays on. */
@@ -266,18 +277,21 @@ export class Replayer extends EventTarget {
     for (const { kind, index, value } of [...this.open.values()]) {
       this.#post(at, kind, index, value, 0);
     }
-    this.#end();
+    this.#end(at);
   }
 
   /** End it early. */
   stop() {
     // After all that was posted already: a note among it would never end.
-    this.instrument.player.panic(Math.max(this.latest, this.instrument.frame));
-    this.#end();
+    const at = Math.max(this.latest, this.instrument.frame);
+    this.instrument.player.panic(at);
+    this.#end(at);
   }
 
-  #end() {
+  /** @param {number} at frame */
+  #end(at) {
     clearInterval(this.timer);
+    for (const [address, value] of this.before) this.instrument.player.write(address, value, at);
     this.dispatchEvent(new Event("end"));
   }
 }

@@ -3,6 +3,7 @@
 /** @typedef {import('./instrument.js').Instrument} Instrument */
 
 import facts from "./facts.js";
+import { fingered, habitsOf } from "./hands/fingering.js";
 import { MAPPINGS } from "./playing/learned.js";
 import { transposed } from "./playing/table.js";
 
@@ -34,6 +35,10 @@ const OVERLAP = 0.001; // s; notes that overlap by more are in one bow
 
 /** A tune that is on. Events: 'move' as it goes on, and 'end'. */
 class Course extends EventTarget {
+  #habits = { shakes: false, string: NaN };
+  /** @type {import('./hands/fingering.js').Fingered[]} */
+  #fingering = [];
+
   /**
    * @param {Instrument} instrument
    * @param {Tune} tune
@@ -64,6 +69,15 @@ class Course extends EventTarget {
   /** Share of the tune that has gone. */
   get progress() {
     return Math.min(Math.max(this.now / this.tune.seconds, 0), 1);
+  }
+
+  /** What the player does with the notes, as it plays now. */
+  get fingering() {
+    const habits = habitsOf(this.instrument.player);
+    const { shakes, string } = this.#habits;
+    if (habits.shakes !== shakes || habits.string !== string)
+      [this.#habits, this.#fingering] = [habits, fingered(this.notes, habits, this.pace)];
+    return this.#fingering;
   }
 
   move() {

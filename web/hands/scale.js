@@ -71,9 +71,13 @@ export function stringOf(note) {
 /** Fingers by semitones above the open string, in the first position, and in those that follow. */
 const FINGERS = [0, 1, 1, 2, 2, 3, 4, 4];
 
-/** A finger that a note is at hand for: 0 is the open string. @param {number} note */
-export function fingerOf(note) {
-  const above = Math.round(note) - OPEN[stringOf(note)];
+/**
+ * The finger that stops a note, 1 to 4.
+ * @param {number} note
+ * @param {number} string
+ */
+export function fingerOf(note, string) {
+  const above = Math.max(Math.round(note) - OPEN[string], 1);
   return FINGERS[above] ?? FINGERS[1 + ((above - FINGERS.length) % (FINGERS.length - 1))];
 }
 

@@ -4,7 +4,7 @@
 /** @typedef {import("../tune.js").Note} Note */
 /** @typedef {import("./picture.js").Moment} Moment */
 
-import { fingerOf, jianpu, stringOf } from "../hands/scale.js";
+import { jianpu } from "../hands/scale.js";
 import { Picture, disc, font, line } from "./picture.js";
 
 const NOW = 0.16; // of the width, where the present note is
@@ -71,7 +71,8 @@ export class Score extends Picture {
       if (to < -20 || from > width + 20) return;
       const isPast = i < course.at && course.marks.length > 0;
       if (course.notes[i - 1]?.isTied) this.#arc(placeOf(course.notes[i - 1].at), from);
-      this.#note(note, from, to, isPast ? course.marks[i] : null, to < now);
+      const mark = isPast ? course.marks[i] : null;
+      this.#note(note, course.fingering[i], from, to, mark, to < now);
     });
     if (state && state.bow.string >= 0 && state.bow.speed !== 0) this.#stroke(now, state.bow.speed);
     if (performance.now() - this.#saidAt < SAID_MS) {
@@ -82,22 +83,23 @@ export class Score extends Picture {
 
   /**
    * @param {Note} note
+   * @param {import("../hands/fingering.js").Fingered} fingered
    * @param {number} from px
    * @param {number} to
    * @param {boolean | null} mark whether it was right; null: not played yet
    * @param {boolean} isGone
    */
-  #note({ pitch }, from, to, mark, isGone) {
+  #note({ pitch }, { string, finger }, from, to, mark, isGone) {
     const { context, colours, height } = this;
     const x = from + 12;
     const { digit, dots } = jianpu(pitch);
     context.globalAlpha = isGone ? 0.45 : 1;
-    context.fillStyle = colours[STRINGS[stringOf(pitch)]];
+    context.fillStyle = colours[STRINGS[string]];
     context.beginPath();
     context.roundRect(from, 0.63 * height, Math.max(to - from - 3, 8), BAR, BAR / 2);
     context.fill();
     context.font = font(15);
-    context.fillText(FINGERS[fingerOf(pitch)], x, 0.86 * height);
+    context.fillText(FINGERS[finger], x, 0.86 * height);
     context.fillStyle = mark === null ? colours.ink : colours[mark ? "good" : "bad"];
     context.font = font(21, 650);
     context.fillText(digit, x, 0.4 * height);

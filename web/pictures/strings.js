@@ -3,7 +3,7 @@
 /** @typedef {import("../interfaces.js").Snapshot} Snapshot */
 /** @typedef {'slowed' | 'moving' | 'still'} View still: the room in which they move, and no motion */
 
-import { POINTS } from "../sound/snapshot.js";
+import { POINTS, playedString } from "../sound/snapshot.js";
 import { RestShape, Stroboscope } from "./stroboscope.js";
 import { line } from "./picture.js";
 import { laneOf } from "./wood.js";
@@ -26,7 +26,7 @@ export class Strings {
   constructor() {
     /** @type {View} */
     this.view = "slowed";
-    this.bowed = 0; // the one that was bowed last
+    this.bowed = 0; // the one that was bowed, or plucked, last
     this.both = [0, 1].map(() => ({
       slow: new Stroboscope(),
       rest: new RestShape(),
@@ -41,7 +41,7 @@ export class Strings {
 
   /** @param {Snapshot} state */
   collect(state) {
-    const { string } = state.bow;
+    const string = playedString(state);
     if (string >= 0) this.bowed = string;
     const note = string < 0 ? NaN : Math.round(state.pitch);
     if (note !== this.note) {

@@ -220,7 +220,8 @@ export class Yehu extends Picture {
     context.fillStyle = colours.ink;
     const lane = laneOf(surface, strings.bowed);
     for (const { x } of (this.showsFingers && state?.fingers) || []) {
-      this.write(String(fingerOf(this.#pitchAt(x))), this.#placeOfFinger(x), lane);
+      const finger = fingerOf(this.#pitchAt(x), strings.bowed);
+      this.write(String(finger), this.#placeOfFinger(x), lane);
     }
     if (!targets || targets.repeats < 2) return;
     context.fillStyle = colours.accent;

@@ -181,13 +181,14 @@ export class Part {
    * @param {number | null} frame
    * @param {import('./table.js').Param} param
    * @param {number} value within its range
+   * @param {number} glideMs least time of the moves that follow
    */
-  set(frame, { index }, value) {
+  set(frame, { index }, value, glideMs) {
     const { interpreter } = this;
     if (interpreter && index === SECTION && (this.#sink.maxPlayers ?? 1) > 1) {
       interpreter.found[SECTION] = value;
       this.#post(frame, WRITE, SECTION, this.#sectionSize(interpreter, 1), 0);
-    } else this.take(frame, SET, index, value);
+    } else this.take(frame, SET, index, value, glideMs);
   }
 
   /**

@@ -102,10 +102,11 @@ export class Player {
    * @param {string} address
    * @param {number} value
    * @param {number | null} frame
+   * @param {number} glideMs least time of the moves that follow
    */
-  write(address, value, frame = null) {
+  write(address, value, frame = null, glideMs = 0) {
     const param = find(address);
-    this.#part.set(this.#at(frame), param, accept(param, value));
+    this.#part.set(this.#at(frame), param, accept(param, value), glideMs);
   }
 
   /** Return to the player what direct writes took over. @param {number | null} frame */

@@ -76,6 +76,19 @@ function fingersOf(numbers, string) {
   return fingers;
 }
 
+/**
+ * The string of the note: the bowed one; of a plucked note the one on which its finger stops its pitch; -1 in silence.
+ * @param {Snapshot} state
+ */
+export function playedString({ bow, pitch, fingers, string: { length } }) {
+  if (bow.string >= 0 || Number.isNaN(pitch)) return bow.string;
+  const stop = fingers.reduce((farthest, { x }) => Math.max(farthest, x), 0);
+  const off = facts.notes.OPEN.map((open) =>
+    Math.abs(open - 12 * Math.log2(1 - stop / length) - pitch),
+  );
+  return off[0] < off[1] ? 0 : 1;
+}
+
 /** From here on a motion repeats itself well enough to be a tone. */
 const CERTAIN = 0.8;
 const FAINT = -70; // dBFS; below is silence

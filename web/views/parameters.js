@@ -4,13 +4,14 @@
 /** @typedef {import('../playing/table.js').Param} Param */
 
 import { find, make, makeButton, whileShown, words } from "../elements.js";
-import { GROUPS, TABLE } from "../playing/table.js";
+import { FREE, GROUPS, TABLE } from "../playing/table.js";
 import { onLanguage, translate, translateOr } from "../i18n.js";
 import { makeLearning } from "./learn.js";
 import { aboutOf, makeRange, nameFor, unitFor, written } from "./slider.js";
 
 /** @param {Page} page */
 export function showParameters({ instrument, taught, midi }) {
+  const { player } = instrument;
   const panel = find("panel-all", HTMLElement);
   const label = words("all.search");
   const search = make("input", { type: "search", "aria-label": label, placeholder: label });
@@ -33,35 +34,63 @@ export function showParameters({ instrument, taught, midi }) {
   });
   const seek = () => {
     const sought = search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    let found = 0;
-    for (const { rows, details } of groups) {
-      let inGroup = 0;
-      for (const { element, text } of rows) {
-        const all = text();
-        element.hidden = !sought.every((word) => all.includes(word));
-        if (!element.hidden) inGroup++;
-      }
-      details.hidden = inGroup === 0;
-      if (sought.length) details.open = inGroup > 0;
-      found += inGroup;
-    }
-    none.textContent = found ? "" : translate("all.none");
+    const has = (/** @type {string} */ text) => sought.every((word) => text.includes(word));
+    const ranked = groups.map(({ rows, details }) => {
+      const found = rows.map(({ element, name, text }) => {
+        const rank = has(name()) ? 0 : has(text()) ? 1 : NOT_FOUND;
+        element.hidden = rank === NOT_FOUND;
+        return { element, rank };
+      });
+      details.append(...inOrder(found));
+      const rank = Math.min(...found.map((one) => one.rank));
+      details.hidden = rank === NOT_FOUND;
+      if (sought.length) details.open = !details.hidden;
+      return { element: details, rank };
+    });
+    panel.append(...inOrder(ranked));
+    none.textContent = ranked.every(({ rank }) => rank === NOT_FOUND) ? translate("all.none") : "";
   };
-  search.addEventListener("input", seek);
+  // By Escape browsers empty the field with the latter event alone.
+  for (const event of ["input", "search"]) search.addEventListener(event, seek);
   onLanguage(seek);
-  const resetAll = () => groups.forEach(({ rows }) => rows.forEach((one) => one.reset()));
-  const reset = makeButton(words("all.reset"), resetAll, { class: "reset-all" });
+  /** What a reset has changed, and is given back. @type {[string, number][]} */
+  let before = [];
+  const moved = () =>
+    FREE.filter(
+      (param) => written(param, player.value(param.address)) !== written(param, param.default),
+    );
+  const resetAll = () => {
+    if (before.length) {
+      for (const [address, value] of before.splice(0)) player.write(address, value);
+    } else {
+      before = moved().map(({ address }) => [address, player.value(address)]);
+      groups.forEach(({ rows }) => rows.forEach((one) => one.reset()));
+    }
+    follow();
+  };
+  const reset = makeButton("", resetAll, { class: "reset-all" });
+  const follow = () => {
+    if (moved().length) before = [];
+    reset.textContent = translate(before.length ? "all.undo" : "all.reset");
+    for (const { rows, details } of groups) {
+      if (details.open) for (const one of rows) one.follow();
+    }
+  };
+  onLanguage(follow);
   panel.append(
     make("div", { class: "row" }, [make("div", { class: "wide" }, [search]), reset]),
     none,
     ...groups.map(({ details }) => details),
   );
-  whileShown(panel, () => {
-    for (const { rows, details } of groups) {
-      if (details.open) for (const one of rows) one.follow();
-    }
-  });
+  seek();
+  whileShown(panel, follow);
 }
+
+const NOT_FOUND = 2;
+
+/** The best found first, the others as they were. @param {{element: HTMLElement, rank: number}[]} found */
+const inOrder = (found) =>
+  found.toSorted((one, other) => one.rank - other.rank).map(({ element }) => element);
 
 /**
  * @param {import('../instrument.js').Instrument} instrument
@@ -117,6 +146,7 @@ function row({ player }, param, learning) {
     follow();
   });
   onLanguage(follow);
-  const text = () => `${label()} ${address} ${param.doc} ${aboutOf(param)}`.toLowerCase();
-  return { element, text, follow, reset };
+  const name = () => `${label()} ${address}`.toLowerCase();
+  const text = () => `${name()} ${param.doc} ${aboutOf(param)}`.toLowerCase();
+  return { element, name, text, follow, reset };
 }

@@ -3,12 +3,23 @@
 /** @typedef {import('../main.js').Page} Page */
 /** @typedef {import('../interfaces.js').Player} Player */
 
-import { find, isServed, make, makeButton, makeSelect, note, section, words } from "../elements.js";
+import {
+  find,
+  isServed,
+  make,
+  makeButton,
+  makeSelect,
+  note,
+  section,
+  whileShown,
+  words,
+} from "../elements.js";
 import facts from "../facts.js";
-import { onLanguage, translateOr } from "../i18n.js";
+import { onLanguage, translate, translateOr } from "../i18n.js";
 import { MAPPINGS } from "../playing/learned.js";
+import { find as findParameter } from "../playing/table.js";
 import { sourceName } from "./learn.js";
-import { makeSliders, nameFor } from "./slider.js";
+import { makeSliders, nameFor, written } from "./slider.js";
 
 /** Presets that the page begins with; a server has a sound of its own. */
 export const AT_FIRST = isServed ? [] : ["vibrato", "chamber"];
@@ -51,28 +62,42 @@ export function showSounds({ instrument: { player }, tuned, yehu, taught }) {
 }
 
 /**
- * Presets to choose from.
+ * Presets to choose from. The one whose values the parameters have is pressed, whoever has set them; where some
+ * are others, the one that most are of is called changed.
  * @param {Player} player
- * @param {{name: string, about: string}[]} presets
+ * @param {{name: string, about: string, values: Readonly<Record<string, number>>}[]} presets
  * @param {() => string} label of all of them, for screen readers
  */
 function cards(player, presets, label) {
-  const buttons = presets.map(({ name, about }) => {
-    const card = makeButton(
-      "",
-      () => {
-        player.applyPreset(name);
-        for (const one of buttons) one.setAttribute("aria-pressed", String(one === card));
-      },
-      { "aria-pressed": String(AT_FIRST.includes(name)) },
-    );
-    card.append(
-      make("span", {}, [() => translateOr(`preset.${name}`, name)]),
-      make("small", {}, [() => translateOr(`preset.${name}.about`, about)]),
-    );
-    return card;
+  const all = presets.map(({ name, about, values }) => {
+    const title = make("span");
+    const card = makeButton("", () => {
+      player.applyPreset(name);
+      follow();
+    });
+    card.append(title, make("small", {}, [() => translateOr(`preset.${name}.about`, about)]));
+    const countChanged = () =>
+      Object.entries(values).filter(([address, value]) => {
+        const param = findParameter(address);
+        return written(param, player.value(address)) !== written(param, value);
+      }).length;
+    return { name, card, title, countChanged };
   });
-  return make("div", { class: "cards", role: "group", "aria-label": label }, buttons);
+  const follow = () => {
+    const changed = all.map((one) => one.countChanged());
+    const least = Math.min(...changed);
+    all.forEach(({ name, card, title }, i) => {
+      const called = translateOr(`preset.${name}`, name);
+      const isChanged = least > 0 && i === changed.indexOf(least);
+      title.textContent = isChanged ? translate("sound.changed", { name: called }) : called;
+      card.setAttribute("aria-pressed", String(changed[i] === 0));
+    });
+  };
+  const buttons = all.map(({ card }) => card);
+  const element = make("div", { class: "cards", role: "group", "aria-label": label }, buttons);
+  onLanguage(follow);
+  whileShown(element, follow);
+  return element;
 }
 
 /** @param {string} name */

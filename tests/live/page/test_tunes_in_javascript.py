@@ -44,3 +44,16 @@ def test_the_challenge_counts_tone_from_the_first_stroke_and_after_a_scratch(fou
     assert state["tone"] == pytest.approx(3.0 + 4.0 + 8.5)
     assert state["longest"] == pytest.approx(8.5)
     assert state["found"] == pytest.approx(1.0)  # of a bow that was too light
+
+
+def test_the_strings_and_fingers_that_are_printed_are_those_that_play(run_node, playing, subtests):
+    presets, tunes = "vibrato,ordinary,pizzicato", "twinkle,frere_jacques,silent_night"
+    played = json.loads(run_node("fingering.mjs", playing, presets, tunes))
+    for name, notes in played.items():
+        with subtests.test(name):
+            assert len(notes) >= 5
+            assert [note["printed"] for note in notes] == [note["seen"] for note in notes]
+    openly, stopped = ([note["printed"] for note in played[f"{each} twinkle"]]
+                       for each in ("ordinary", "vibrato"))  # fmt: skip
+    assert openly[2] == [1, 0]  # C5 on its open string, or by the fourth finger
+    assert stopped[2] == [0, 4]

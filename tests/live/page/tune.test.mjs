@@ -14,7 +14,7 @@ const { default: facts } = await load("facts.js");
 const { default: examples } = await load("examples.js");
 const { TuneGuide, notesOf } = await load("tune.js");
 const { Challenge } = await load("challenge.js");
-const { fingerOf, jianpuText, setTonic } = await load("hands/scale.js");
+const { jianpuText, setTonic } = await load("hands/scale.js");
 const { BEGIN, SLIDE, DRAW } = facts.kinds;
 
 /** @param {number[]} pitches a second each */
@@ -112,7 +112,6 @@ found.tunes = Object.values(examples).map((tune) => {
     isInOrder: notes.every(({ at, until }, i) => at < until && at >= (notes[i - 1]?.at ?? 0)),
   };
 });
-found.fingers = [65, 67, 69, 70, 72, 74, 76, 77, 79].map(fingerOf);
 
 const challenge = new Challenge();
 challenge.take("none", 5); // it has not begun

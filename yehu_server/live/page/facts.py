@@ -13,7 +13,7 @@ from yehu_server.ahead.interpreter import interpreter_layout, snapshot_layout, s
 from yehu_server.core.midi import registered_parameters, tables
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.tables import MAX_BINDS, TABLES
-from yehu_server.core.player import fingering
+from yehu_server.core.player import fingering, vibrato
 from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.parameter_indices import INDEX
@@ -126,6 +126,9 @@ def facts(notes: NoteRange = YEHU) -> dict[str, Any]:
             "LOWEST_NOTE": notes.lowest,
             "HIGHEST_NOTE": notes.highest,
             "OPEN_WITHIN": fingering.OPEN_WITHIN,
+            "HIGHEST": list(map(float, notes.highest_notes)),
+            "SLOW_FROM_S": vibrato.SLOW_FROM_S,
+            "LEAST_PRESS": vibrato.LEAST_PRESS,
             "KEYS": KEYS[-1] + 1,
             "ELSEWHERE": ELSEWHERE,
         },

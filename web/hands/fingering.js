@@ -1,0 +1,62 @@
+/** Which string and finger the player takes for notes to come: the rules of the server's `fingering.choose`. */
+
+/** @typedef {import('../interfaces.js').Player} Player */
+/** @typedef {import('../tune.js').Note} Note */
+
+import facts from "../facts.js";
+import { OPEN, fingerOf } from "./scale.js";
+
+const { OPEN_WITHIN, HIGHEST, SLOW_FROM_S, LEAST_PRESS } = facts.notes;
+const ON_OPEN = -1; // place of a finger that is up
+
+/**
+ * @typedef {object} Fingered
+ * @property {0 | 1} string
+ * @property {number} finger 0: the string is open
+ */
+
+/** What the choice depends on, besides the notes. @param {Player} player */
+export function habitsOf(player) {
+  const rocks = player.value("/playing/vibrato") > 0;
+  const presses = player.value("/playing/vibrato_press") >= LEAST_PRESS;
+  const isPlucked = player.value("/playing/pizzicato") >= 0.5;
+  const string = Math.round(player.value("/playing/string")) - 1;
+  return { shakes: (rocks || presses) && !isPlucked, string };
+}
+
+/**
+ * The fingering of notes, one after another.
+ * @param {Note[]} notes
+ * @param {ReturnType<typeof habitsOf>} habits `string`: that is asked for; -1: either
+ * @param {number} pace
+ * @returns {Fingered[]}
+ */
+export function fingered(notes, { shakes, string: asked }, pace) {
+  let [string, place] = [-1, ON_OPEN];
+  return notes.map(({ at, pitch }, i) => {
+    const isSlow = i === 0 || at - notes[i - 1].at >= SLOW_FROM_S * pace;
+    [string, place] = choose(pitch, asked, shakes && isSlow, string, place);
+    const own = /** @type {0 | 1} */ (string);
+    return { string: own, finger: place === ON_OPEN ? 0 : fingerOf(pitch, own) };
+  });
+}
+
+/**
+ * The string, and the finger's place on it as a share of its length, from where the finger was.
+ * @param {number} pitch
+ * @param {number} asked the string that is asked for
+ * @param {boolean} shakes an open string is stopped on the other
+ * @param {number} string
+ * @param {number} place
+ * @returns {[number, number]}
+ */
+function choose(pitch, asked, shakes, string, place) {
+  const on = (/** @type {number} */ one) => 1 - 2 ** ((OPEN[one] - pitch) / 12);
+  if (pitch < OPEN[0] + OPEN_WITHIN) return [0, ON_OPEN];
+  if (asked === 0) return [0, on(0)];
+  if (Math.abs(pitch - OPEN[1]) < OPEN_WITHIN && (asked === 1 || !shakes)) return [1, ON_OPEN];
+  if (pitch < OPEN[1] + OPEN_WITHIN) return [0, on(0)];
+  const isFar = asked === 1 || string !== 0 || place === ON_OPEN || pitch > HIGHEST[0];
+  const isNearer = !isFar && Math.abs(on(0) - place) < Math.abs(on(1) - place);
+  return isNearer ? [0, on(0)] : [1, on(1)];
+}

@@ -18,7 +18,7 @@ from yehu_server.core.engine.event_dispatch import interpret_events
 from yehu_server.core.engine.mixing import mix_block
 from yehu_server.core.engine.output import SOUNDED
 from yehu_server.core.engine.sounding import sound_block
-from yehu_server.core.stage.image_sources import EARS
+from yehu_server.core.stage.room_geometry import EARS
 
 Array = Any
 T = TypeVar("T")

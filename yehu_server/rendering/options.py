@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
-from yehu_server.core.stage.image_sources import EARS
+from yehu_server.core.stage.room_geometry import EARS
 from yehu_server.errors import ScoreError
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.parts import section_size

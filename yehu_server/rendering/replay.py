@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.engine.ensemble import Ensemble
-from yehu_server.core.stage.image_sources import EARS
+from yehu_server.core.stage.room_geometry import EARS
 from yehu_server.scores.capture import Capture
 from yehu_server.scores.score import check_duration
 from yehu_server.util.files import replace_any

@@ -25,9 +25,9 @@ from yehu_server.core.engine.rig import METERS_AT, RIG_BYTES, SEAT_AT, count_par
 from yehu_server.core.engine.telemetry import METERS, TELEMETRY_S
 from yehu_server.core.stage import late_field, seat
 from yehu_server.core.stage.directivity import side_signal
-from yehu_server.core.stage.image_sources import EARS, REFERENCE_DISTANCE_M
 from yehu_server.core.stage.late_field import CHECK_FRAMES, is_settled, reverberate, set_room
 from yehu_server.core.stage.record import BUSES, DIRECT, EARLY, SEND, STAGE, TAPE, TAPE_AT
+from yehu_server.core.stage.room_geometry import EARS, REFERENCE_DISTANCE_M
 from yehu_server.core.stage.seat import (
     LEFT,
     RIGHT,

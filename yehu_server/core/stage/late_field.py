@@ -15,7 +15,7 @@ import numpy as np
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.record import CHUNK
 from yehu_server.core.physics.elementary import exp10, log, log2, power
-from yehu_server.core.stage import absorption, image_sources
+from yehu_server.core.stage import absorption, room_geometry
 from yehu_server.core.stage.delay_lines import (
     LINES,
     absorb,
@@ -183,7 +183,7 @@ def reset_state(r: Any) -> None:
 def measure(r: Any, size: float) -> None:
     """Give the lines the lengths that belong to a size (m): primes, in equal ratios."""
     r.size = size
-    middle = MIDDLE_LINE_PATHS * image_sources.mean_free_path(size) / image_sources.SPEED_OF_SOUND
+    middle = MIDDLE_LINE_PATHS * room_geometry.mean_free_path(size) / room_geometry.SPEED_OF_SOUND
     middle = min(max(middle, MIN_MIDDLE_S), MAX_MIDDLE_S)
     frames = 0
     for i in range(LINES):
@@ -196,7 +196,7 @@ def measure(r: Any, size: float) -> None:
     # (s), of which the diffuse field has as much.
     heard = LINES * r.rate / (frames * log(1e6))
     r.was_per_level = r.per_level
-    r.per_level = image_sources.diffuse_level(size, 1.0) / math.sqrt(0.5 * heard)
+    r.per_level = room_geometry.diffuse_level(size, 1.0) / math.sqrt(0.5 * heard)
 
 
 @compiled_exactly

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from yehu_server.core.controls.record import CHUNK
-from yehu_server.core.stage.image_sources import EARS
 from yehu_server.core.stage.late_field import LATE_FIELD, empty_room, prepare_room
+from yehu_server.core.stage.room_geometry import EARS
 
 TAPE = 1 << 19  # the last frames, for recorders: 10 s at 48 kHz
 BUSES = 6

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
-from yehu_server.core.stage import absorption, image_sources
+from yehu_server.core.stage import absorption, room_geometry
 from yehu_server.core.stage.directivity import SIDES, clear_sides, prepare_sides, reset_sides
-from yehu_server.core.stage.image_sources import EARS, WALLS
 from yehu_server.core.stage.late_field import CLOSE_S
+from yehu_server.core.stage.room_geometry import EARS, WALLS
 
 HISTORY_FRAMES = 1 << 16  # frames of sound that are kept for reflections
 CROSSFADE_S = 0.03  # from the previous reflections to the new ones
@@ -110,12 +110,12 @@ def set_reflections(
     s.crossfade = 1.0 if s.size == 0.0 else 0.0
     s.size, s.decay, s.damping, s.distance, s.pan = size, decay, damping, distance, pan
     s.now = 1 - s.now
-    image_sources.find_images(size, distance, pan, decay, s.seconds, s.gain[s.now])
+    room_geometry.find_images(size, distance, pan, decay, s.seconds, s.gain[s.now])
     for ear in range(EARS):
         for wall in range(WALLS):
             frames = int(math.floor(s.seconds[ear, wall] * s.rate + 0.5))  # noqa: RUF046 - a float, compiled
             s.delay[s.now, ear, wall] = min(frames, HISTORY_FRAMES - 1)
-    path_s = image_sources.mean_free_path(size) / image_sources.SPEED_OF_SOUND
+    path_s = room_geometry.mean_free_path(size) / room_geometry.SPEED_OF_SOUND
     absorption.set_shelf(s, 0, path_s, decay, damping)
     low = s.b_0[0] + s.b_1[0]  # already in the gains, so the shelf has unity gain there
     low /= 1.0 + s.a_1[0]

@@ -1,4 +1,4 @@
-"""A shoebox room: its walls, the listener, a player and the player's images in them. Compiled.
+"""Where walls, listener and player of a shoebox room are, and the player's images. Compiled.
 
 Coordinates are in metres: x from the left wall to the right one, y from the wall behind the
 listener to the one behind the players, z from the floor up. Sound of an image is what a wall

@@ -99,9 +99,10 @@ def of_bank(program: int) -> Array:
 
 def of_this_instrument() -> Array:
     """Play the tune on this instrument, dry: bow and finger are asked for swell and vibrato."""
-    from yehu_server.scores.score import Score, ScoreEvent
+    from yehu_server.scores.events import Events, ScoreEvent
+    from yehu_server.scores.score import Score
 
-    events = tuple(ScoreEvent(time, message) for time, message in midi_events())
+    events = Events.of(ScoreEvent(time, message) for time, message in midi_events())
     score = Score(events, written()[1], "tune")
     sound = yehu.render(score, dry=True, mono=True, settings={"/playing/variation": 0.0}).sound
     return np.asarray(sound, np.float64)

@@ -57,7 +57,7 @@ LONGEST_S = 20.0  # of a piece
 def rendered(name: str, seed: int, *, dry: bool, **how: Any) -> Any:
     """The sound of a file, one channel."""
     whole = read_any(EXAMPLES / name)
-    events = tuple(event for event in whole.events if event.time_s < LONGEST_S)
+    events = whole.events.where(whole.events.time_s < LONGEST_S)
     score = replace(whole, events=events, duration_s=min(whole.duration_s, LONGEST_S))
     mapping = MAPPINGS.get(name, "keyboard")
     how = {"phrasing": PHRASING, "mapping": mapping, "seed": seed, **how}

@@ -7,8 +7,8 @@ from yehu_server.following.frames import HOP_S
 from yehu_server.following.heard import Heard
 from yehu_server.following.notes import strokes_of
 from yehu_server.following.performance import FollowOptions, dynamics_of, performed
+from yehu_server.scores.events import Setting
 from yehu_server.scores.midi_export import midi_of_performance
-from yehu_server.scores.score import Setting
 from yehu_server.scores.smf.reader import read_score
 
 

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from yehu_server.scores.events import ScoreEvent
 from yehu_server.scores.reading import read_written
-from yehu_server.scores.score import Score, ScoreEvent
+from yehu_server.scores.score import Score
 from yehu_server.scores.smf.reader import read_score
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,7 +7,7 @@ from musicxml_text import note, score
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.chosen_parts import DRUMS
-from yehu_server.scores.octaves import NoteSpan, octaves_of
+from yehu_server.scores.octaves import NoteSpan, NoteSpans, octaves_of
 from yehu_server.scores.reading import ReadOptions, percussion_notes, read_any
 from yehu_server.scores.tune_part import OVERLAP, melodic_part, take_turns
 
@@ -38,7 +38,7 @@ def test_a_tune_is_moved_as_a_whole_then_by_phrases_then_left_to_the_player():
     ]
     wrong = []
     for pitches, expected, summary in cases:
-        found = octaves_of(sounding(*pitches), 0.5)
+        found = octaves_of(NoteSpans.of([sounding(*pitches)]), 0.5)
         if [*found.of_notes] != expected or found.summary != summary:
             wrong.append((pitches, found, found.summary))
     assert not wrong
@@ -189,17 +189,17 @@ def test_the_tune_is_found_among_what_accompanies_it():
         "nothing": ([[], []], ["a", "b"], None),
     }
     wrong = {
-        name: melodic_part(names, parts)
+        name: found
         for name, (parts, names, expected) in cases.items()
-        if melodic_part(names, parts) != expected
+        if (found := melodic_part(names, NoteSpans.of(parts))) != expected
     }
     assert not wrong
 
 
 def test_parts_that_take_turns_are_distinguished_from_parts_that_sound_together():
-    assert take_turns([TUNE, sounding(60, 62, begin=8.0), sounding(64, begin=20.0)])
-    assert take_turns([TUNE, []])
-    assert not take_turns([TUNE, sounding(60, 62, begin=7.0)])
+    assert take_turns(NoteSpans.of([TUNE, sounding(60, 62, begin=8.0), sounding(64, begin=20.0)]))
+    assert take_turns(NoteSpans.of([TUNE, []]))
+    assert not take_turns(NoteSpans.of([TUNE, sounding(60, 62, begin=7.0)]))
 
 
 def test_turns_are_those_of_each_pair_of_parts():
@@ -221,6 +221,6 @@ def test_turns_are_those_of_each_pair_of_parts():
             together(parts[a], parts[b]) <= OVERLAP * min(sounds[a], sounds[b])
             for a, b in ((0, 1), (0, 2), (1, 2))
         )
-        assert take_turns(parts) == expected
+        assert take_turns(NoteSpans.of(parts)) == expected
         outcomes.add(expected)
     assert outcomes == {True, False}

@@ -10,7 +10,7 @@ from shaping import phrased
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import NUMBER
 from yehu_server.params.table import find
-from yehu_server.scores.score import Setting
+from yehu_server.scores.events import Setting
 from yehu_server.scores.written import performed as performing
 from yehu_server.scores.written.mark_settings import PLACES, QUICK_TREMOLO
 from yehu_server.scores.written.notated import (

@@ -11,9 +11,10 @@ from shaping import phrased
 
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Part
+from yehu_server.scores.events import Events, ScoreEvent
 from yehu_server.scores.phrasing import MIN_FOR_BOWS, is_fingered
 from yehu_server.scores.reading import ReadOptions, read_any
-from yehu_server.scores.score import COMMON_TIME, Score, ScoreEvent, phrases_of
+from yehu_server.scores.score import COMMON_TIME, Score, phrases_of
 
 BEAT_S = 0.5
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -29,7 +30,7 @@ def bare(*notes, velocity=80, extra=(), metres=(COMMON_TIME,)) -> Score:
     events += [(beat, 2, message) for beat, message in extra]
     events.sort(key=lambda each: each[:2])
     score = [ScoreEvent(beat * BEAT_S, message, beat) for beat, _, message in events]
-    return Score(tuple(score), score[-1].time_s, metres=metres)
+    return Score(Events.of(score), score[-1].time_s, metres=metres)
 
 
 SCALE = [(n * 0.5, 0.5, 67 + 2 * (n % 4)) for n in range(16)]
@@ -77,7 +78,7 @@ def test_marked_loudness_stays():
         else event
         for n, event in enumerate(louder.events)
     ]
-    played = Score(tuple(events), louder.duration_s)
+    played = Score(Events.of(events), louder.duration_s)
     assert velocities(phrased(played, 1.0)) == velocities(played)
 
 

@@ -15,7 +15,8 @@ from yehu_server.params.articulations import NUMBER
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.rendering.options import Options, Part
 from yehu_server.rendering.performance import Performance
-from yehu_server.scores.score import Score, ScoreEvent, Setting
+from yehu_server.scores.events import Events, ScoreEvent, Setting
+from yehu_server.scores.score import Score
 from yehu_server.scores.slides import logistic
 
 BEND, STRING = "/playing/bend", "/playing/string"
@@ -30,7 +31,7 @@ def score_of(*keys: int, each_s: float = HALVES, at_first: tuple[Setting, ...] =
         begin, end = number * each_s, (number + 1) * each_s
         events.append(ScoreEvent(begin, mido.Message("note_on", note=key, velocity=80), begin))
         events.append(ScoreEvent(end, mido.Message("note_off", note=key), end))
-    return Score(tuple(events), len(keys) * each_s)
+    return Score(Events.of(events), len(keys) * each_s)
 
 
 def settings(score: Score, address: str) -> list[tuple[float, float | None]]:

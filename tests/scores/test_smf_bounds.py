@@ -10,7 +10,8 @@ from midi_bytes import END, chunk, midi, on, tempo
 from midi_reading import read_file, timed
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.score import Score, ScoreEvent, concatenate
+from yehu_server.scores.events import Events, ScoreEvent
+from yehu_server.scores.score import Score, concatenate
 from yehu_server.scores.smf import chunks as smf_chunks
 from yehu_server.scores.smf.reader import read_score
 
@@ -74,9 +75,13 @@ def sound(time_s: float, *data: int) -> ScoreEvent:
     return ScoreEvent(time_s, mido.Message.from_bytes(data))
 
 
+BEGUN = sound(0.0, 0x90, 60, 80), sound(1.0, 0x80, 60, 0)
+LATER = sound(0.25, 0x90, 62, 80), sound(0.5, 0x90, 62, 0)
+
+
 def test_scores_in_a_row_start_when_the_one_before_has_passed():
-    first = Score((sound(0.0, 0x90, 60, 80), sound(1.0, 0x80, 60, 0)), 1.5, "one", ("odd",))
-    second = Score((sound(0.25, 0x90, 62, 80), sound(0.5, 0x90, 62, 0)), 1.0, "two")
+    first = Score(Events.of(BEGUN), 1.5, "one", ("odd",))
+    second = Score(Events.of(LATER), 1.0, "two")
     both = concatenate([first, second])
     assert timed(both) == [
         (0.0, [0x90, 60, 80]),
@@ -89,7 +94,7 @@ def test_scores_in_a_row_start_when_the_one_before_has_passed():
 
 
 def test_scores_in_a_row_may_not_last_longer_than_anybody_may_ask_for():
-    half = Score((), 3600.0 * 501)
+    half = Score(Events.of(()), 3600.0 * 501)
     with pytest.raises(ScoreError, match=r"lasts 1e\+03 hours, more than 1000"):
         concatenate([half, half])
 

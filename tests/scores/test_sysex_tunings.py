@@ -3,7 +3,7 @@
 import mido
 import pytest
 
-from yehu_server.scores.score import Setting
+from yehu_server.scores.events import Setting
 from yehu_server.scores.smf.reader import read_score
 
 ALL = (3, 127, 127)  # channels, of scale tunings

@@ -175,3 +175,12 @@ def test_what_holds_no_note_is_refused(tmp_path):
     for name in ("session.jsonl", "silent.mid"):
         with pytest.raises(ScoreError, match=f"{name}: has no note"):
             read_as_written(tmp_path / name)
+
+
+def test_a_track_whose_notes_have_no_velocity_is_no_part(tmp_path):
+    path = midi(tmp_path / "x.mid", [(0, 1, 60, 80)])
+    file = mido.MidiFile(path)
+    file.add_track().append(mido.Message("note_on", note=60, velocity=0, channel=1))
+    file.save(path)
+    written, _ = written_of_midi(read_score(path))
+    assert [len(part.notes) for part in written.parts] == [1]

@@ -14,7 +14,8 @@ from yehu_server.core.player.fingering import OPEN_WITHIN
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.playing.stringing import range_text
-from yehu_server.scores.score import BEND, MAX_DURATION_H, Score, ScoreEvent, Setting
+from yehu_server.scores.events import BEND, Events, ScoreEvent, Setting
+from yehu_server.scores.score import MAX_DURATION_H, Score
 from yehu_server.scores.written.layout import SEMITONES
 
 ACCIDENTALS = {"#": 1, "♯": 1, "b": -1, "♭": -1}
@@ -129,7 +130,7 @@ def score_of(notes: Iterable[Any] | Any) -> Score:
         add(end, 0, mido.Message("note_off", note=key))
         last = max(last, end)
     events.sort(key=lambda each: each[:2])
-    return Score(tuple(event for *_, event in events), last, "notes")
+    return Score(Events.of(event for *_, event in events), last, "notes")
 
 
 def _note(place: int, row: Any) -> tuple[float, float, float, int]:

@@ -20,7 +20,8 @@ from yehu_server.following.heard import Heard
 from yehu_server.following.notes import A4_HZ, AT_NOTE, SLIDE_S, HeardNote, Stroke
 from yehu_server.playing.options import STILL_HANDS
 from yehu_server.playing.tuning import EQUAL, KEYS, STANDARD_A4, Tuning
-from yehu_server.scores.score import BEND, Score, ScoreEvent, Setting
+from yehu_server.scores.events import BEND, Events, ScoreEvent, Setting
+from yehu_server.scores.score import Score
 from yehu_server.scores.written.mark_settings import ATTACK, INNER, STRING
 
 Array = Any
@@ -93,7 +94,7 @@ def performed(heard: Heard, strokes: list[Stroke], options: FollowOptions) -> Pe
     events = sorted(builder.events, key=lambda each: each.time_s)
     duration = max(heard.duration_s, events[-1].time_s)
     name = heard.name.rpartition("/")[2].rpartition(".")[0] or heard.name
-    score = Score(tuple(events), duration, name, heard.warnings)
+    score = Score(Events.of(events), duration, name, heard.warnings)
     return Performed(score, semitones, len(notes), len(strokes), builder.moved)
 
 

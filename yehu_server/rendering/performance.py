@@ -14,7 +14,7 @@ from yehu_server.params.table import find
 from yehu_server.playing.parts import assemble, number_of_instruments
 from yehu_server.rendering.cores import Cores, Sounded, computed_ahead, shared
 from yehu_server.rendering.options import Options, Part
-from yehu_server.scores.score import ScoreEvent, Setting
+from yehu_server.scores.events import ScoreEvent, Setting
 
 END: tuple[int, ScoreEvent | None] = (-1, None)  # after the last event
 Samples = np.ndarray[Any, np.dtype[np.float32]]

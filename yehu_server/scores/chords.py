@@ -2,6 +2,8 @@
 
 from collections.abc import Collection
 
+import numpy as np
+
 from yehu_server.scores.score import Score, ScoreNote, without_notes
 
 STRUM_S = 0.03  # from the first to the last note of a chord, as of sections
@@ -25,7 +27,7 @@ def without_lower_notes(score: Score, channels: Collection[int]) -> tuple[Score,
         else:
             low, top = sorted((note, top), key=lambda each: each.key)
             lower.append(low)
-    return without_notes(score, lower), len(lower)
+    return without_notes(score, np.array([note.begins for note in lower])), len(lower)
 
 
 def _sound_together(one: ScoreNote, other: ScoreNote) -> bool:

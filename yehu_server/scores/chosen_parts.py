@@ -3,7 +3,6 @@
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cache
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -11,20 +10,16 @@ import numpy as np
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
-from yehu_server.scores.octaves import NoteSpan, octaves_of
-from yehu_server.scores.score import (
-    REST_S,
-    Score,
-    ScoreEvent,
-    ScoreNote,
-    ScorePart,
-    transposed,
-)
+from yehu_server.scores.events import KEY, NoteColumns
+from yehu_server.scores.octaves import NO_NOTES, octaves_of_parts
+from yehu_server.scores.score import REST_S, Score, ScorePart
 from yehu_server.scores.slides import ARTICULATION
 from yehu_server.scores.smf.tunings import transposed_keys
 from yehu_server.scores.tune_part import melodic_part, take_turns
 from yehu_server.scores.written.in_range import line_of
 from yehu_server.scores.written.notated import Written, listed
+
+Array = Any
 
 MELODIC = frozenset(range(16)) - {PERCUSSION_CHANNEL}
 DRUMS = "channel 10 is percussion: its keys name drums, and are played as pitches"
@@ -75,15 +70,12 @@ def tune_of(score: Score, within: NoteRange = YEHU) -> int | None:
     """The number, from 0, of the part of a score of MIDI that carries the tune; None if all do."""
     if len(score.parts) < 2:
         return None
-    parts: list[list[NoteSpan]] = [[] for _ in score.parts]
-    find = finder_of(score.parts)
-    for note in score.notes:
-        at = find(note.channel, note.track)
-        if at is not None:
-            parts[at].append(NoteSpan(note.start_s, note.end_s, (float(note.key),)))
-    if take_turns(parts):
+    notes = score.note_columns
+    part = _parts_at(score.parts, notes.channel, notes.track)
+    spans = notes.where(part >= 0).spans(part[part >= 0])
+    if take_turns(spans):
         return None
-    return melodic_part([part.name for part in score.parts], parts, within)
+    return melodic_part([part.name for part in score.parts], spans, within)
 
 
 def others_line(written: Written, plays: Sequence[int]) -> str:
@@ -102,7 +94,7 @@ def parts_chosen(score: Score, asked: Sequence[str]) -> Score:
     try:
         numbers = numbers_of(names, asked)
     except ScoreError as error:
-        has_drums = any(note.channel == PERCUSSION_CHANNEL for note in score.notes)
+        has_drums = (score.note_columns.channel == PERCUSSION_CHANNEL).any()
         more = "; percussion is no part: --channel 10 plays it" if has_drums else ""
         raise ScoreError(f"{error}{more}") from None
     return _only(score, [score.parts[number] for number in numbers])
@@ -114,21 +106,18 @@ def _only(score: Score, kept: Sequence[ScorePart]) -> Score:
     Switches in a track without notes are for all that play on their channel. Percussion stays, so
     that it is counted: nobody plays it unasked.
     """
+    notes, events = score.note_columns, score.events
+    is_own = _parts_at(kept, notes.channel, notes.track) >= 0
+    sounding, channels = {*notes.track.tolist()}, {*notes.channel[is_own].tolist()}
+    is_kept = np.ones(len(events), bool)
+    is_kept[notes.begins] = is_own | (notes.channel == PERCUSSION_CHANNEL)
     find = finder_of(kept)
-    places = {(note.channel, note.track) for note in score.notes}
-    sounding = {track for _, track in places}
-    channels = {channel for channel, track in places if find(channel, track) is not None}
-
-    def is_kept(event: ScoreEvent) -> bool:
-        message = event.message
+    for place in np.flatnonzero(events.code < 0).tolist():
+        _, message, _, track = events[place]
         if message.type == "setting" and message.address == ARTICULATION:
-            is_own = event.track not in sounding or find(message.channel, event.track) is not None
-            return is_own and message.channel in channels
-        is_note = message.type == "note_on" and message.velocity > 0
-        is_drum = is_note and message.channel == PERCUSSION_CHANNEL
-        return not is_note or is_drum or find(message.channel, event.track) is not None
-
-    return replace(score, events=tuple(filter(is_kept, score.events)), parts=tuple(kept))
+            is_own_switch = track not in sounding or find(message.channel, track) is not None
+            is_kept[place] = is_own_switch and message.channel in channels
+    return replace(score, events=events.where(is_kept), parts=tuple(kept))
 
 
 def midi_in_range(
@@ -144,53 +133,62 @@ def midi_in_range(
     is that of `within`. Only what `channels` play moves, by default all but percussion.
     """
     channels = MELODIC if channels is None else channels
-    tuned, events = transposed_keys(score), list(score.events)
-    by_part: dict[str, list[ScoreNote]] = {}
-    by_place: dict[tuple[int, int], list[ScoreNote]] = {}  # the same, by channel and track
-    find = finder_of(score.parts)
-    notes = [note for note in score.notes if note.channel in channels]
-    for note in notes:
-        place = note.channel, note.track
-        if place not in by_place:
-            at = find(*place)
-            own_name = f"channel {note.channel + 1}" if at is None else score.parts[at].name
-            by_place[place] = by_part.setdefault("" if is_mpe else own_name, [])
-        by_place[place].append(note)
-    if not is_mpe and any(note.channel == PERCUSSION_CHANNEL for note in notes):
+    events = score.events
+    notes = score.note_columns
+    notes = notes.where(np.isin(notes.channel, [*channels]))
+    if not is_mpe and (notes.channel == PERCUSSION_CHANNEL).any():
         score = replace(score, remarks=(*score.remarks, DRUMS))
-    struck = np.zeros(len(events) + 1, bool)  # of each event; -1 is none
-    struck[_column(notes, "begins")] = struck[-1] = True
-    moves = np.zeros(len(events), np.int64)  # octaves, of each event
-    parts = []
-    for name, own in by_part.items():
-        spans = [(n.start_s, n.end_s, (n.key + tuned.get(n.begins, 0.0),)) for n in own]
-        octaves = octaves_of([*map(NoteSpan._make, spans)], REST_S, within)
-        if octaves.summary and (is_mpe or own[0].channel in MELODIC):
-            parts.append((name, octaves))
-        by, keys = np.array(octaves.of_notes), _column(own, "key")
-        by[(keys + 12 * by < 0) | (keys + 12 * by > 127)] = 0
-        ends = _column(own, "ends")
-        moves[_column(own, "begins")] = by
-        moves[ends[~struck[ends]]] = by[~struck[ends]]  # not where the key is struck again
-    if not moves.any():
+    sharper = np.zeros(len(events))
+    tuned = transposed_keys(score)
+    sharper[[*tuned]] = [*tuned.values()]
+    names, part = _named_parts(score.parts, notes)
+    if is_mpe:
+        names, part = names[:1], np.zeros_like(part)
+    order = np.argsort(part, kind="stable")
+    spans = notes.spans(part, sharper[notes.begins]).where(order)
+    found = octaves_of_parts(spans, REST_S, within)
+    by = np.zeros(len(part), np.int64)  # octaves
+    by[order] = np.concatenate([octaves.of_notes for octaves in (*found, NO_NOTES)])
+    of_first = notes.channel[np.unique(part, return_index=True)[1]].tolist()
+    parts = [
+        ("" if len(names) == 1 else name, octaves)
+        for name, octaves, channel in zip(names, found, of_first, strict=True)
+        if octaves.summary and (is_mpe or channel in MELODIC)
+    ]
+    by[(notes.key + 12 * by < 0) | (notes.key + 12 * by > 127)] = 0
+    moves = np.zeros(len(events) + 1, np.int64)  # of each event; -1 is none
+    moves[notes.ends] = by
+    moves[notes.begins] = by  # also where a key is struck again
+    if not moves[:-1].any():
         return score
-    moved: dict[tuple[int, int], Any] = {}  # messages, by those they were and octaves
-    numbers = moves.nonzero()[0]
-    for number, octave in zip(numbers.tolist(), moves[numbers].tolist(), strict=True):
-        time_s, message, beat, track = events[number]
-        higher = moved.get((id(message), octave))
-        if higher is None:
-            higher = moved[id(message), octave] = transposed(message, 12 * octave)
-        events[number] = ScoreEvent._make((time_s, higher, beat, track))
-    is_one = len(by_part) == 1
-    line = line_of([("" if is_one else name, octaves) for name, octaves in parts], within)
-    remarks = (*score.remarks, *filter(None, (line,)))
-    return replace(score, events=tuple(events), remarks=remarks)
+    remarks = (*score.remarks, *filter(None, (line_of(parts, within),)))
+    moved = events.with_codes(events.code + 12 * KEY * moves[:-1])
+    return replace(score, events=moved, remarks=remarks)
 
 
-def _column(notes: Sequence[ScoreNote], name: str) -> Any:
-    """A number of each note [shape=(notes,)]."""
-    return np.fromiter(map(attrgetter(name), notes), np.int64, len(notes))
+def _named_parts(parts: Sequence[ScorePart], notes: NoteColumns) -> tuple[list[str], Array]:
+    """The names of parts that have notes, in the order of their first; and the part of each note.
+
+    Notes of no part are one, with their channel's name.
+    """
+    find, numbers = finder_of(parts), dict[str, int]()
+    places = notes.track << 4 | notes.channel
+    found, first, of_note = np.unique(places, return_index=True, return_inverse=True)
+    number_of = np.zeros(len(found), np.int64)
+    for number in np.argsort(first).tolist():
+        channel, track = int(found[number]) & 15, int(found[number]) >> 4
+        at = find(channel, track)
+        name = f"channel {channel + 1}" if at is None else parts[at].name
+        number_of[number] = numbers.setdefault(name, len(numbers))
+    return [*numbers], number_of[of_note]
+
+
+def _parts_at(parts: Sequence[ScorePart], channel: Array, track: Array) -> Array:
+    """The numbers, from 0, of the parts that play at channels and tracks; -1 where none does."""
+    find = finder_of(parts)
+    places, of_place = np.unique(track << 4 | channel, return_inverse=True)
+    found = (find(place & 15, place >> 4) for place in places.tolist())
+    return np.array([-1 if at is None else at for at in found], np.int64)[of_place]
 
 
 def finder_of(parts: Sequence[ScorePart]) -> Callable[[int, int], int | None]:

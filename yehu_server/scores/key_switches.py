@@ -1,15 +1,19 @@
 """Find the keys of a MIDI file that are key switches, of a mapping or of another library."""
 
-from collections import defaultdict
 from collections.abc import Collection
 from dataclasses import replace
-from itertools import pairwise
+from typing import Any
+
+import numpy as np
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import ARTICULATIONS
-from yehu_server.scores.score import Score, ScoreEvent, ScoreNote, Setting, without_notes
+from yehu_server.scores.events import NOTE_OFF, NOTE_ON, Setting
+from yehu_server.scores.score import Score, without_notes
 from yehu_server.scores.slides import ARTICULATION
+
+Array = Any
 
 FAR = 12  # semitones
 
@@ -23,25 +27,29 @@ def with_key_switches(score: Score, first: int | None, channels: Collection[int]
     """
     if first is None:
         return score
-    events: list[ScoreEvent] = []
-    taken: list[float] = []
-    for event in score.events:
-        message = event.message
-        is_key = message.type in ("note_on", "note_off") and message.channel in channels
-        if not (is_key and 0 <= message.note - first < len(ARTICULATIONS)):
-            events.append(event)
-            continue
-        if message.type == "note_on" and message.velocity > 0:
-            taken.append(float(message.note - first))
-            chosen = Setting(ARTICULATION, taken[-1], message.channel)
-            events.append(ScoreEvent(event.time_s, chosen, event.beat, event.track))
-    if not taken:
+    events = score.events
+    played = ((events.kind == NOTE_ON) | (events.kind == NOTE_OFF)) & np.isin(
+        events.code >> 16 & 15, [*channels]
+    )
+    chosen = events.first - first
+    is_key = played & (chosen >= 0) & (chosen < len(ARTICULATIONS))
+    taken = np.flatnonzero(is_key & events.is_struck)
+    if not len(taken):
         return score
-    remark = f"notes taken as key switches: {len(taken)} (articulations: {len({*taken})})"
-    read = replace(score, events=tuple(events), remarks=(*score.remarks, remark))
-    if not read.notes:
+    code, settings = events.code.copy(), dict[Setting, int]()
+    for place, key, channel in zip(
+        taken.tolist(), chosen[taken].tolist(), (code[taken] >> 16 & 15).tolist(), strict=True
+    ):
+        setting = Setting(ARTICULATION, float(key), channel)
+        code[place] = settings.setdefault(setting, -1 - len(events.others) - len(settings))
+    count = len(np.unique(chosen[taken]))
+    remark = f"notes taken as key switches: {len(taken)} (articulations: {count})"
+    switched = events.with_codes(code, tuple(settings)).where(~is_key | (code < 0))
+    read = replace(score, events=switched, remarks=(*score.remarks, remark))
+    if not len(read.note_columns.key):
         raise ScoreError(f"has no other note: {remark}")
-    sounding = {(note.channel, note.track) for note in read.notes}
+    notes = read.note_columns
+    sounding = {*zip(notes.channel.tolist(), notes.track.tolist(), strict=True)}
     parts = [
         part
         for part in score.parts
@@ -50,28 +58,29 @@ def with_key_switches(score: Score, first: int | None, channels: Collection[int]
     return replace(read, parts=tuple(parts))
 
 
-def low_keys(score: Score, channels: Collection[int], within: NoteRange = YEHU) -> list[ScoreNote]:
-    """The notes that seem to be key switches of another library.
+def low_keys(score: Score, channels: Collection[int], within: NoteRange = YEHU) -> Array:
+    """The events that begin notes which seem to be key switches of another library.
 
     They are below the range, and an octave or more below all others of their channel and track.
     """
-    places: dict[tuple[int, int], list[ScoreNote]] = defaultdict(list)
-    for note in score.notes:
-        if note.channel in channels:
-            places[note.channel, note.track].append(note)
-    found: list[ScoreNote] = []
-    for notes in places.values():
-        ends = pairwise(sorted({note.key for note in notes}))
-        gaps = [low for low, high in ends if high - low >= FAR and low < within.lowest]
-        low = [note for note in notes if gaps and note.key <= gaps[-1]]
-        found += low if 2 * len(low) <= len(notes) else []
-    return found
+    notes = score.note_columns
+    notes = notes.where(np.isin(notes.channel, [*channels]))
+    place = notes.track << 4 | notes.channel
+    order = np.argsort(place, kind="stable")
+    found = [np.zeros(0, np.int64)]
+    for own in np.split(order, np.flatnonzero(np.diff(place[order])) + 1):
+        keys = np.unique(notes.key[own])
+        below = keys[:-1][(np.diff(keys) >= FAR) & (keys[:-1] < within.lowest)]
+        low = own[notes.key[own] <= below.max(initial=-1)]
+        if 2 * len(low) <= len(own):
+            found.append(notes.begins[low])
+    return np.concatenate(found)
 
 
 def without_low_keys(score: Score, channels: Collection[int], within: NoteRange) -> Score:
     """A score without its `low_keys`, and a remark that counts them."""
     low = low_keys(score, channels, within)
-    if not low:
+    if not len(low):
         return score
     remark = f"notes far below the tune left out, as key switches: {len(low)}"
     return replace(without_notes(score, low), remarks=(*score.remarks, remark))

@@ -12,7 +12,8 @@ from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 from yehu_server.params.table import find
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.mapping import DEFAULT, load
-from yehu_server.scores.score import BEND, Score, Setting
+from yehu_server.scores.events import BEND, Setting
+from yehu_server.scores.score import Score
 from yehu_server.scores.written.layout import signature
 from yehu_server.scores.written.mark_settings import ARTICULATION, SLIDES
 from yehu_server.scores.written.notated import Written

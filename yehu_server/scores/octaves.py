@@ -5,8 +5,10 @@ are, a phrase may move otherwise, from rest to rest. What is outside still is le
 who moves each note by itself, as in live playing.
 """
 
+from __future__ import annotations
+
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -30,11 +32,37 @@ class NoteSpan(NamedTuple):
     pitches: tuple[float, ...]
 
 
+class NoteSpans(NamedTuple):
+    """The same of the notes of parts, in columns [shape=(notes,)]."""
+
+    begin: Array
+    end: Array
+    # The lowest and the highest pitch of each; NaN where it has none.
+    low: Array
+    high: Array
+    part: Array  # its number, counted from 0
+
+    @classmethod
+    def of(cls, parts: Sequence[Iterable[NoteSpan]]) -> NoteSpans:
+        """The notes of parts."""
+        rows = [
+            (begin, end, min(pitches, default=math.nan), max(pitches, default=math.nan), part)
+            for part, notes in enumerate(parts)
+            for begin, end, pitches in notes
+        ]
+        begin, end, low, high, part = np.array(rows, float).reshape(-1, len(cls._fields)).T
+        return cls(begin, end, low, high, part.astype(np.int64))
+
+    def where(self, chosen: Array) -> NoteSpans:
+        """Those of a mask, or in the order of some places."""
+        return NoteSpans(*(column[chosen] for column in self))
+
+
 @dataclass(frozen=True)
 class Octaves:
     """By how many octaves notes are moved."""
 
-    of_notes: tuple[int, ...]  # for each note
+    of_notes: Array  # for each note
     whole: int  # of most of the part
     # Number of phrases, and of those that are moved otherwise.
     phrases: int
@@ -55,52 +83,66 @@ class Octaves:
         return ", ".join(words)
 
 
-def octaves_of(notes: Sequence[NoteSpan], rest: float, within: NoteRange = YEHU) -> Octaves:
-    """Return the octaves by which each note is moved.
+NO_NOTES = Octaves(np.zeros(0, np.int64), 0, 0, 0, 0)
 
-    Notes come in the order of their beginnings. A silence of `rest`, in their unit, parts phrases;
-    the instrument has the notes `within`.
+
+def octaves_of(notes: NoteSpans, rest: float, within: NoteRange = YEHU) -> Octaves:
+    """Return the octaves by which each note of a part is moved, as of `octaves_of_parts`."""
+    return next(iter(octaves_of_parts(notes, rest, within)), NO_NOTES)
+
+
+def octaves_of_parts(notes: NoteSpans, rest: float, within: NoteRange = YEHU) -> list[Octaves]:
+    """Return the octaves by which each note of parts that have notes is moved.
+
+    Notes come by part, then in the order of their beginnings. A silence of `rest`, in their unit,
+    parts phrases; the instrument has the notes `within`.
     """
-    starts = _starts(notes, rest)
-    if not starts:
-        return Octaves((), 0, 0, 0, 0)
-    outside = np.add.reduceat(_are_outside(notes, within), starts, axis=1, dtype=np.int64)
-    whole = int(_best(outside.sum(axis=1), 0))
-    own = _best(outside, whole)
-    others, left = (own != whole).sum(), outside[own + FARTHEST, np.arange(len(own))].sum()
-    of_notes = np.repeat(own, np.diff(starts, append=len(notes))).tolist()
-    return Octaves(tuple(of_notes), whole, len(starts), int(others), int(left))
+    if not len(notes.begin):
+        return []
+    _, part = np.unique(notes.part, return_inverse=True)
+    ends, rank = np.unique(notes.end, return_inverse=True)
+    offset = part * len(ends)  # so that the latest end is one of the same part
+    until = ends[np.maximum.accumulate(offset + rank) - offset]
+    is_new = np.diff(part, prepend=-1) > 0
+    is_start = is_new.copy()
+    is_start[1:] |= notes.begin[1:] - until[:-1] >= rest
+    starts = np.flatnonzero(is_start)
+    outside = outside_by_octaves(notes, starts, within)
+    of_part = part[starts]
+    firsts = np.flatnonzero(is_new[starts])
+    whole = _best(np.add.reduceat(outside, firsts, axis=1), 0)
+    own = _best(outside, whole[of_part])
+    left = outside[own + FARTHEST, np.arange(len(own))]
+    others = np.add.reduceat(own != whole[of_part], firsts, dtype=np.int64)
+    counts = np.diff(firsts, append=len(own)), others, np.add.reduceat(left, firsts)
+    of_notes = np.split(
+        np.repeat(own, np.diff(starts, append=len(part))), np.flatnonzero(is_new)[1:]
+    )
+    columns = (column.tolist() for column in (whole, *counts))
+    return [Octaves(*row) for row in zip(of_notes, *columns, strict=True)]
 
 
-def _best(outside: Array, preferred: int) -> Array:
+def _best(outside: Array, preferred: Array | int) -> Array:
     """The octaves that leave the fewest notes outside, and of these the nearest to `preferred`.
 
-    `outside`: numbers of notes [shape=(2 FARTHEST + 1, ...)], by octaves from -FARTHEST.
+    `outside`: numbers of notes [shape=(2 FARTHEST + 1, groups)], by octaves from -FARTHEST.
     """
-    nearest = np.array(sorted(OCTAVES, key=lambda octaves: (abs(octaves - preferred), -octaves)))
-    return nearest[outside[nearest + FARTHEST].argmin(axis=0)]
+    by = np.array(OCTAVES)[:, None]
+    farther = 2 * np.abs(by - preferred) + (by < preferred)  # of two as near the higher
+    return (outside * 8 * FARTHEST + farther).argmin(axis=0) - FARTHEST
 
 
-def _are_outside(notes: Sequence[NoteSpan], within: NoteRange) -> Array:
-    """Whether each note is outside the range, moved by each of OCTAVES; one without pitches not."""
-    kinds: dict[tuple[float, ...], int] = {}
-    kind = np.array([kinds.setdefault(note.pitches, len(kinds)) for note in notes])
-    low, high = (np.array([end(p, default=math.nan) for p in kinds]) for end in (min, max))
-    moved = 12.0 * np.array(OCTAVES)[:, None]
-    fits = (within.lowest - OPEN_WITHIN - moved < low) & (
-        high < within.highest + OPEN_WITHIN - moved
-    )
-    return (~fits & ~np.isnan(low))[:, kind]
+def outside_by_octaves(notes: NoteSpans, starts: Array, within: NoteRange) -> Array:
+    """How many notes of groups are outside the range, moved by OCTAVES [shape=(octaves, groups)].
 
-
-def _starts(notes: Sequence[NoteSpan], rest: float) -> list[int]:
-    """The number of each phrase's first note."""
-    starts: list[int] = []
-    until = -math.inf
-    for number, (begin, end, _) in enumerate(notes):
-        if not starts or begin - until >= rest:
-            starts.append(number)
-            until = end
-        elif end > until:
-            until = end
-    return starts
+    Groups begin at some places. A note without pitches is not outside.
+    """
+    lowest, highest = within.lowest - OPEN_WITHIN, within.highest + OPEN_WITHIN
+    return np.array([
+        np.add.reduceat(
+            (lowest - moved >= notes.low) | (notes.high >= highest - moved),
+            starts,
+            dtype=np.int64,
+        )
+        for moved in 12.0 * np.array(OCTAVES)
+    ])  # fmt: skip

@@ -13,6 +13,8 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 from typing import Any
 
+import numpy as np
+
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.rubato import delayed
 from yehu_server.scores.score import Score, ScoreNote, phrases_of, says_mpe
@@ -200,14 +202,11 @@ def _share_a_beat(note: ScoreNote, after: ScoreNote) -> bool:
 
 
 def _changed(score: Score, velocities: dict[int, int], ends_s: dict[int, float]) -> Score:
-    events = []
-    for number, event in enumerate(score.events):
-        if number in velocities:
-            message = event.message.copy(velocity=velocities[number])
-            events.append(event._replace(message=message))
-        elif number in ends_s:
-            events.append(event._replace(time_s=ends_s[number]))
-        else:
-            events.append(event)
-    events.sort(key=lambda event: event.time_s)
-    return replace(score, events=tuple(events))
+    events = score.events
+    code, time_s = events.code.copy(), events.time_s.copy()
+    struck = [*velocities]
+    code[struck] = code[struck] & ~127 | np.array([*velocities.values()], np.int64)
+    moved = {place: at_s for place, at_s in ends_s.items() if place not in velocities}
+    time_s[[*moved]] = [*moved.values()]
+    events = replace(events, code=code, time_s=time_s)
+    return replace(score, events=events.where(np.argsort(time_s, kind="stable")))

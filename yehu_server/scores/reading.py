@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
-from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from pkgutil import resolve_name
+
+import numpy as np
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.player.note_range import YEHU, NoteRange
@@ -18,13 +19,12 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
+from yehu_server.scores.events import NoteColumns
 from yehu_server.scores.key_switches import with_key_switches, without_low_keys
-from yehu_server.scores.octaves import NoteSpan
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import (
     MAX_DURATION_H,
     Score,
-    ScoreEvent,
     check_duration,
     errors_name,
     says_mpe,
@@ -41,28 +41,26 @@ from yehu_server.util.files import open_regular
 
 def channels_with_notes(scores: Iterable[Score]) -> list[int]:
     """The channels that have notes, counted from 0, in order; percussion is among them."""
-    return sorted({note.channel for score in scores for note in score.notes})
+    return sorted({each for score in scores for each in score.note_columns.channel.tolist()})
 
 
 def tracks_with_notes(
     scores: Iterable[Score], channels: Collection[int] = chosen_parts.MELODIC
 ) -> list[int]:
     """The tracks that have notes on some channels, counted from 1, in order."""
-    notes = (note for score in scores for note in score.notes)
-    return sorted({note.track for note in notes if note.channel in channels})
+    played = (_on(score, channels) for score in scores)
+    return sorted({track for notes in played for track in notes.track.tolist()})
 
 
 def shares_channels(scores: Iterable[Score]) -> bool:
     """Whether tracks that sound at once have notes on one channel; percussion does not count."""
-    for score in scores:
-        tracks: dict[int, dict[int, list[NoteSpan]]] = defaultdict(lambda: defaultdict(list))
-        for note in score.notes:
-            if note.channel in chosen_parts.MELODIC:
-                span = NoteSpan(note.start_s, note.end_s, (float(note.key),))
-                tracks[note.channel][note.track].append(span)
-        if not all(take_turns([*each.values()]) for each in tracks.values()):
-            return True
-    return False
+    own = (_on(score, [channel]) for score in scores for channel in chosen_parts.MELODIC)
+    return not all(take_turns(notes.spans(notes.track)) for notes in own)
+
+
+def _on(score: Score, channels: Collection[int]) -> NoteColumns:
+    notes = score.note_columns
+    return notes.where(np.isin(notes.channel, [*channels]))
 
 
 def part_name(scores: Sequence[Score], channel: int | None = None, track: int | None = None) -> str:
@@ -74,13 +72,13 @@ def part_name(scores: Sequence[Score], channel: int | None = None, track: int | 
             return name
     if channel is None:
         return numbered
-    tracks = {note.track for note in scores[0].notes if note.channel == channel}
+    tracks = {*_on(scores[0], [channel]).track.tolist()}
     return found.get((None, min(tracks)), numbered) if len(tracks) == 1 else numbered
 
 
 def percussion_notes(scores: Iterable[Score]) -> int:
     """Number of notes on channel 10."""
-    return sum(note.channel == PERCUSSION_CHANNEL for score in scores for note in score.notes)
+    return sum(len(_on(score, [PERCUSSION_CHANNEL]).key) for score in scores)
 
 
 def part_of(score: Score, channel: int | None = None, track: int | None = None) -> Score:
@@ -89,19 +87,15 @@ def part_of(score: Score, channel: int | None = None, track: int | None = None) 
     Messages for all, such as a reset, are in each part. Controllers that a file has in a track
     without notes belong to all tracks that play on their channel.
     """
-    sounding = {note.track for note in score.notes}
-    on = {note.channel for note in score.notes if note.track == track}
-
-    def is_kept(event: ScoreEvent) -> bool:
-        own = _channel(event)
-        is_in_track = event.track == track or (event.track not in sounding and own in on)
-        return own is None or (channel in (own, None) and (track is None or is_in_track))
-
-    return replace(score, events=tuple(filter(is_kept, score.events)))
-
-
-def _channel(event: ScoreEvent) -> int | None:
-    return getattr(event.message, "channel", None)
+    events, notes = score.events, score.note_columns
+    own = events.channel
+    is_kept = (own < 0) | (channel is None) | (own == channel)
+    if track is not None:
+        is_in_track = events.track == track
+        is_silent = ~np.isin(events.track, notes.track)
+        is_in_track |= is_silent & np.isin(own, notes.channel[notes.track == track])
+        is_kept &= is_in_track | (own < 0)
+    return replace(score, events=events.where(is_kept))
 
 
 MIDI = (".mid", ".midi", ".kar", ".rmi", ".smf")
@@ -237,7 +231,7 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
     elif len(score.parts) > 1 and not (options.all_parts or is_mpe):
         is_usual = options.within == YEHU
         score = tune if is_usual else chosen_parts.default_midi_part(score, options.within)
-    if not score.notes:
+    if not len(score.note_columns.key):
         line = "has controllers and no note: nothing sounds"
         score = replace(score, remarks=(*score.remarks, line))
     elif options.in_range:

@@ -9,12 +9,15 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
-from yehu_server.scores.score import Score, ScoreNote, phrases_of
+from yehu_server.scores.events import NoteColumns
+from yehu_server.scores.score import Score, phrase_starts
+
+Array = Any
 
 # At full rubato: a beat at either end of a phrase is two thirds of this longer, one in its middle a
 # third shorter.
@@ -40,30 +43,33 @@ def midi_delays(score: Score, tune: Score) -> Delays:
     return delays_of(notes if tune is score else _melodic(tune))
 
 
-def _melodic(score: Score) -> list[ScoreNote]:
-    return [note for note in score.notes if note.channel != PERCUSSION_CHANNEL]
+def _melodic(score: Score) -> NoteColumns:
+    notes = score.note_columns
+    return notes.where(notes.channel != PERCUSSION_CHANNEL)
 
 
-def is_in_time(notes: Sequence[ScoreNote]) -> bool:
+def is_in_time(notes: NoteColumns) -> bool:
     """Whether notes were written by a machine: on a grid, and in a tempo that hardly changes."""
-    places = GRID * np.array([*map(attrgetter("beat"), notes)])
+    places, count = GRID * notes.beat, len(notes.beat)
     near = np.count_nonzero(np.abs(places - np.rint(places)) < NEAR * GRID)
-    if not notes or near < IN_TIME * len(notes):
+    if not count or near < IN_TIME * count:
         return False
     tempi = _tempi(notes)
-    changes = sum(abs(after - one) > SAME_TEMPO * one for one, after in pairwise(tempi))
-    return changes * STEADY_BEATS <= max(notes[-1].beat - notes[0].beat, STEADY_BEATS)
+    changes = int(np.count_nonzero(np.abs(np.diff(tempi)) > SAME_TEMPO * tempi[:-1]))
+    return changes * STEADY_BEATS <= max(float(notes.beat[-1] - notes.beat[0]), STEADY_BEATS)
 
 
-def delays_of(notes: Sequence[ScoreNote]) -> Delays:
+def delays_of(notes: NoteColumns) -> Delays:
     """The delays of a score at full rubato: points of seconds as written and delays (s), in order.
 
     `notes`: of the part that leads. Between the points are straight lines.
     """
     points: list[tuple[float, float]] = []
-    for phrase in phrases_of(notes):
-        begin, length = phrase[0].start_s, phrase[-1].end_s - phrase[0].start_s
-        if len(phrase) < MIN_NOTES or length < MIN_S:
+    starts_s, ends_s, beats = (each.tolist() for each in (notes.start_s, notes.end_s, notes.beat))
+    starts = phrase_starts(starts_s, ends_s, beats)
+    for first, after in pairwise([*starts, len(beats)]):
+        begin, length = starts_s[first], ends_s[after - 1] - starts_s[first]
+        if after - first < MIN_NOTES or length < MIN_S:
             continue
         for step in range(POINTS + 1):
             to_end = 2.0 * step / POINTS - 1.0  # the integral of the square less a third
@@ -72,25 +78,26 @@ def delays_of(notes: Sequence[ScoreNote]) -> Delays:
     return _with_end(notes, points)
 
 
-def _with_end(notes: Sequence[ScoreNote], points: list[tuple[float, float]]) -> Delays:
+def _with_end(notes: NoteColumns, points: list[tuple[float, float]]) -> Delays:
     """The delays with those of the last beats added, where their tempo is steady."""
-    close = [note for note in notes if note.beat > notes[-1].beat - 2.0 * LAST_BEATS - NEAR]
-    tempi = _tempi(close)
-    is_steady = bool(tempi) and 0.0 < max(tempi) <= (1.0 + SAME_TEMPO) * min(tempi)
-    if not is_steady or len(notes) < MIN_NOTES:
+    if len(notes.beat) < MIN_NOTES:
         return tuple(points)
-    last, quarter_s = notes[-1], tempi[-1]
-    begin = last.start_s - LAST_BEATS * quarter_s
-    if begin < notes[0].start_s:
+    close = notes.where(notes.beat > notes.beat[-1] - 2.0 * LAST_BEATS - NEAR)
+    tempi = _tempi(close).tolist()
+    if not (tempi and 0.0 < max(tempi) <= (1.0 + SAME_TEMPO) * min(tempi)):
         return tuple(points)
-    held_s = min(last.length_s, quarter_s)
+    last_s, quarter_s = float(notes.start_s[-1]), tempi[-1]
+    begin = last_s - LAST_BEATS * quarter_s
+    if begin < notes.start_s[0]:
+        return tuple(points)
+    held_s = min(float(notes.end_s[-1]) - last_s, quarter_s)
     at = sorted({
-        *(begin + (last.start_s - begin) * step / POINTS for step in range(POINTS + 1)),
-        last.start_s + held_s,
+        *(begin + (last_s - begin) * step / POINTS for step in range(POINTS + 1)),
+        last_s + held_s,
         *(seconds for seconds, _ in points if seconds > begin),
     })  # fmt: skip
     before = [point for point in points if point[0] < begin]
-    after = [(s, at_time(points, s) + _slowed(s, begin, last.start_s, held_s)) for s in at]
+    after = [(s, at_time(points, s) + _slowed(s, begin, last_s, held_s)) for s in at]
     return (*before, *after)
 
 
@@ -102,13 +109,10 @@ def _slowed(seconds: float, begin: float, last: float, held_s: float) -> float:
     )
 
 
-def _tempi(notes: Sequence[ScoreNote]) -> list[float]:
+def _tempi(notes: NoteColumns) -> Array:
     """The length of a quarter (s), from each note to the next."""
-    return [
-        (after.start_s - one.start_s) / (after.beat - one.beat)
-        for one, after in pairwise(notes)
-        if after.beat > one.beat + NEAR
-    ]
+    is_later = notes.beat[1:] > notes.beat[:-1] + NEAR
+    return np.diff(notes.start_s)[is_later] / np.diff(notes.beat)[is_later]
 
 
 def at_time(points: Sequence[tuple[float, float]], seconds: float) -> float:
@@ -130,5 +134,6 @@ def delayed(score: Score, amount: float) -> Score:
     def played(seconds: float) -> float:
         return seconds + amount * at_time(score.delays, seconds)
 
-    events = (event._replace(time_s=played(event.time_s)) for event in score.events)
-    return replace(score, events=tuple(events), duration_s=played(score.duration_s), delays=())
+    times = np.array([played(time_s) for time_s in score.events.time_s.tolist()])
+    events = replace(score.events, time_s=times)
+    return replace(score, events=events, duration_s=played(score.duration_s), delays=())

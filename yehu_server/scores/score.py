@@ -7,19 +7,21 @@ import errno
 import math
 import os
 from bisect import insort
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property, lru_cache
-from operator import itemgetter
+from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import mido
+import numpy as np
 
 from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.playing.sources import MPE_FROM
+from yehu_server.scores.events import AFTERTOUCH, CONTROL, Array, Events, NoteColumns
 from yehu_server.util.files import error_reason, read_bytes
 
 MAX_DURATION_H = 2.0  # of all that is played, where no other is asked for
@@ -68,33 +70,6 @@ def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:
     if not data.strip():
         raise ScoreError("is empty")
     return data
-
-
-BEND = "/playing/bend"  # address of what lies between keys
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A parameter that a score sets, among the messages of its events."""
-
-    address: str  # of `params/table.py`
-    value: float | None  # None: what it was before the score set it
-    channel: int = 0  # of the part, counted from 0; where that is not played, nothing is set
-    is_passing: bool = False  # holds until the next note begins, which ends it without a move
-    type: ClassVar[str] = "setting"  # as messages have one
-
-
-class ScoreEvent(NamedTuple):
-    """One channel-voice message at its time (s) from the start of the score.
-
-    `beat` is its time in quarter notes; NaN where the file counts frames of a film. `track` is
-    counted from 1; 0 where there are no tracks.
-    """
-
-    time_s: float
-    message: Any  # mido.Message, or Setting
-    beat: float = math.nan
-    track: int = 0
 
 
 @dataclass(frozen=True)
@@ -149,7 +124,7 @@ class Score:
     """
 
     # Sorted by time; at equal times, in the order of the tracks, then of the file.
-    events: tuple[ScoreEvent, ...]
+    events: Events
     # Up to the last event or end-of-track of the longest track, but not more than 30 s beyond the
     # last event.
     duration_s: float
@@ -175,9 +150,21 @@ class Score:
         return metre.beat, metre.quarters
 
     @cached_property
-    def notes(self) -> tuple[ScoreNote, ...]:
+    def note_columns(self) -> NoteColumns:
         """Its note-ons, in order, with what ends them, as a key struck again does."""
-        return tuple(_paired(self))
+        events = self.events
+        begins, ends = events.struck_and_ends
+        end_s = np.where(ends < 0, self.duration_s, events.time_s[ends])
+        code, start_s = events.code[begins], events.time_s[begins]
+        pitch = code >> 16 & 15, code >> 8 & 127, code & 127
+        more = start_s, end_s, events.beat[begins], events.track[begins]
+        return NoteColumns(begins, ends, *pitch, *more)
+
+    @cached_property
+    def notes(self) -> tuple[ScoreNote, ...]:
+        """The same as objects."""
+        columns = (column.tolist() for column in self.note_columns)
+        return tuple(map(ScoreNote._make, zip(*columns, strict=True)))
 
     def __post_init__(self) -> None:
         check_duration(self.duration_s, LONGEST_DURATION_H)
@@ -185,16 +172,17 @@ class Score:
 
 def concatenate(scores: Sequence[Score]) -> Score:
     """Join scores, one after another; a system reset between them ends notes, pedals and bends."""
-    events: list[ScoreEvent] = []
+    columns: list[tuple[Any, ...]] = []
+    others: list[Any] = [mido.Message("reset")]
     start = 0.0
     for number, score in enumerate(scores, start=1):
-        events += (
-            ScoreEvent(start + event.time_s, event.message, event.beat, event.track)
-            for event in score.events
-        )
+        events = score.events
+        code = np.where(events.code < 0, events.code - len(others), events.code)
+        columns.append((start + events.time_s, events.beat, events.track, code))
+        others += events.others
         start += score.duration_s
         if number < len(scores):
-            events.append(ScoreEvent(start, mido.Message("reset")))
+            columns.append(([start], [math.nan], [0], [-1]))
     names = " + ".join(score.name for score in scores)
     warnings = (f"{score.name}: {warning}" for score in scores for warning in score.warnings)
     remarks = (f"{score.name}: {remark}" for score in scores for remark in score.remarks)
@@ -203,7 +191,11 @@ def concatenate(scores: Sequence[Score]) -> Score:
         parts = tuple(replace(part, notes=0) for part in parts)
     metres = {score.metres for score in scores}  # from the beginning of each score
     metre = metres.pop() if len(metres) == 1 else (COMMON_TIME,)
-    return Score(tuple(events), start, names, tuple(warnings), metre, parts, tuple(remarks))
+    joined = Events.of(())
+    if columns:
+        time_s, beat, track, code = map(np.concatenate, zip(*columns, strict=True))
+        joined = Events(time_s, beat, track, code, tuple(others))
+    return Score(joined, start, names, tuple(warnings), metre, parts, tuple(remarks))
 
 
 class ScoreNote(NamedTuple):
@@ -226,65 +218,34 @@ class ScoreNote(NamedTuple):
         return self.end_s - self.start_s
 
 
-def _paired(score: Score) -> Iterator[ScoreNote]:
-    held: dict[tuple[int, int], list[Any]] = {}
-    found: list[list[Any]] = []
-    for number, (time_s, message, beat, track) in enumerate(score.events):
-        kind = message.type
-        if kind not in ("note_on", "note_off"):
-            continue
-        key = channel, note = message.channel, message.note
-        if key in held:
-            begun = held.pop(key)
-            begun[1], begun[6] = number, time_s
-        if kind == "note_on" and (velocity := message.velocity) > 0:
-            begun = [number, -1, channel, note, velocity, time_s, score.duration_s, beat, track]
-            held[key] = begun
-            found.append(begun)
-    return map(ScoreNote._make, found)
+def without_notes(score: Score, begins: Array) -> Score:
+    """A score without the notes that some events begin, and without what ends them.
 
-
-def without_notes(score: Score, notes: Collection[ScoreNote]) -> Score:
-    """A score without some of its notes, and what ends them; another strike of the key stays."""
-    if not notes:
+    Another strike of the key stays.
+    """
+    if len(begins) == 0:
         return score
-    left = {note.begins for note in notes}
-    left |= {note.ends for note in notes} - {note.begins for note in score.notes}
-    events = (event for number, event in enumerate(score.events) if number not in left)
-    return replace(score, events=tuple(events))
-
-
-def distinct(messages: Iterable[Any]) -> list[Any]:
-    """Messages, each object once; of a file, those that are equal are one."""
-    return list({id(message): message for message in messages}.values())
+    notes = score.note_columns
+    ends = notes.ends[np.isin(notes.begins, begins)]
+    kept = np.ones(len(score.events), bool)
+    kept[ends[ends >= 0]] = False
+    kept[notes.begins] = True
+    kept[begins] = False
+    return replace(score, events=score.events.where(kept))
 
 
 def says_mpe(score: Score) -> bool:
     """Whether a score of MIDI says that its channels are notes of one player (MPE, RPN 6)."""
-    return any(
-        message.type == "control_change"
-        and (message.control, message.value) == (RPN_FINE, MPE_CONFIGURATION)
-        for message in distinct(map(itemgetter(1), score.events))
-    )
+    said = CONTROL, RPN_FINE, MPE_CONFIGURATION
+    return bool((score.events.code & 0xF0FFFF == said[0] << 20 | said[1] << 8 | said[2]).any())
 
 
 def seems_mpe(score: Score) -> bool:
     """Whether each of several channels but the first has notes and a pressure, as of MPE."""
-    messages = distinct(map(itemgetter(1), score.events))
-    pressed = {message.channel for message in messages if message.type == "aftertouch"}
-    played = {note.channel for note in score.notes}
+    events = score.events
+    pressed = {*(events.code[events.kind == AFTERTOUCH] >> 16 & 15).tolist()}
+    played = {*score.note_columns.channel.tolist()}
     return len(played) >= MPE_FROM and 0 not in played and played <= pressed
-
-
-def transposed(message: mido.Message, by: int) -> mido.Message:
-    """A note-on or note-off so many semitones higher."""
-    return _note(message.type, message.channel, message.note + by, message.velocity)
-
-
-@lru_cache(maxsize=1 << 16)
-def _note(kind: str, channel: int, note: int, velocity: int) -> mido.Message:
-    """A message, cached and never changed, as mido checks each for long."""
-    return mido.Message(kind, channel=channel, note=note, velocity=velocity)
 
 
 # A phrase ends with a rest, with a note that lasts much longer than those about it, or when it is
@@ -292,24 +253,30 @@ def _note(kind: str, channel: int, note: int, velocity: int) -> mido.Message:
 REST_S, LONG_NOTE, LONGEST_PHRASE_BEATS, MAX_NOTES = 0.3, 2.5, 16.0, 4096
 
 
-def phrases_of(notes: Iterable[ScoreNote]) -> list[list[ScoreNote]]:
+def phrases_of(notes: Sequence[ScoreNote]) -> list[list[ScoreNote]]:
     """Divide the notes of one voice into phrases."""
-    phrases: list[list[ScoreNote]] = []
-    lengths: list[float] = []  # of the last phrase, sorted
-    for note in notes:
-        if not phrases or _ends_before(phrases[-1], lengths, note):
-            phrases.append([])
-            lengths = []
-        phrases[-1].append(note)
-        insort(lengths, note.length_s)
-    return phrases
+    spans = [(note.start_s, note.end_s, note.beat) for note in notes]
+    starts = phrase_starts(*zip(*spans, strict=True)) if spans else []
+    return [[*notes[begin:end]] for begin, end in pairwise([*starts, len(notes)])]
 
 
-def _ends_before(phrase: list[ScoreNote], lengths: list[float], note: ScoreNote) -> bool:
-    last = phrase[-1]
-    if note.start_s - last.end_s >= REST_S:
-        return True
-    if note.beat - phrase[0].beat >= LONGEST_PHRASE_BEATS or len(phrase) >= MAX_NOTES:
-        return True
-    median_s = lengths[len(lengths) // 2]
-    return len(phrase) > 3 and last.length_s > LONG_NOTE * median_s
+def phrase_starts(
+    starts_s: Sequence[float], ends_s: Sequence[float], beats: Sequence[float]
+) -> list[int]:
+    """The places at which phrases of the notes of one voice begin."""
+    starts: list[int] = []
+    lengths: list[float] = []  # of the phrase's notes, sorted
+    last_end, last_length, first_beat = -math.inf, 0.0, 0.0
+    for place, (start, end, beat) in enumerate(zip(starts_s, ends_s, beats, strict=True)):
+        count = len(lengths)
+        if (
+            start - last_end >= REST_S
+            or beat - first_beat >= LONGEST_PHRASE_BEATS
+            or count >= MAX_NOTES
+            or (count > 3 and last_length > LONG_NOTE * lengths[count // 2])
+        ):
+            starts.append(place)
+            lengths, first_beat = [], beat
+        last_end, last_length = end, end - start
+        insort(lengths, last_length)
+    return starts

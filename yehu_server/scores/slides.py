@@ -26,7 +26,8 @@ from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.stringing import notes_of as range_of
-from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, Setting
+from yehu_server.scores.events import BEND, Events, ScoreEvent, Setting
+from yehu_server.scores.score import Score, ScoreNote
 
 ARTICULATION, STRING = "/playing/articulation", "/playing/string"
 PHRASING, PIZZICATO, PORTAMENTO = "/playing/phrasing", "/playing/pizzicato", "/playing/portamento"
@@ -94,7 +95,7 @@ def with_slides(score: Score, amount: float, playing: PlayingOptions) -> Score:
     events: list[ScoreEvent] = []
     for number, event in enumerate(score.events):
         events += [*before[number], event]
-    return replace(score, events=(*events, *before[len(score.events)]))
+    return replace(score, events=Events.of((*events, *before[len(score.events)])))
 
 
 def _setting(

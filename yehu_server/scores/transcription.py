@@ -23,6 +23,7 @@ from yehu_server.errors import ScoreError
 from yehu_server.playing.sources import RESERVED
 from yehu_server.scores.capture import Capture, read_capture
 from yehu_server.scores.chosen_parts import MELODIC, finder_of, tune_of
+from yehu_server.scores.events import ScoreEvent
 from yehu_server.scores.key_switches import low_keys
 from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
@@ -31,7 +32,6 @@ from yehu_server.scores.score import (
     KeySignature,
     Metre,
     Score,
-    ScoreEvent,
     ScorePart,
     errors_name,
     says_mpe,
@@ -85,8 +85,8 @@ def read_as_written(
     # Chords are single lines here, and may look like a tune.
     tune = tune_of(score) if len(score.parts) == len(written.parts) else None
     remarks = score.remarks
-    if low := low_keys(score, MELODIC):
-        line = f"may be key switches, far below the tune: {len(low)} notes (--range skip)"
+    if low := len(low_keys(score, MELODIC)):
+        line = f"may be key switches, far below the tune: {low} notes (--range skip)"
         remarks = (*remarks, line)
     return replace(written, warnings=score.warnings, remarks=remarks, tune=tune), lost
 
@@ -225,9 +225,9 @@ def _written(
     parts = []
     chords = 0
     for name, heard in voices:
-        part, more = _part(name, heard, grid)
-        chords += more
-        if part.notes:
+        if heard:
+            part, more = _part(name, heard, grid)
+            chords += more
             parts.append(part)
     signs = {each.beat.limit_denominator(960): each.fifths for each in signatures}
     if not any(signs.values()):

@@ -188,6 +188,23 @@ def test_of_twelve_senders_eleven_are_not_late_for_the_one_that_floods() -> None
     assert max(frame for frame, *_ in applied) > now + 4 * BLOCK
 
 
+def test_where_the_queues_of_all_senders_are_full_each_plays_a_thousand_notes_a_second() -> None:
+    instrument, senders = live(), range(1, SENDER_QUEUES + 1)
+    room = (SENDER_QUEUE - RESERVE) // 2
+    for n in range(room):
+        for sender in senders:
+            post_of_sender(instrument, sender, DUE, NOTE_ON, sender, 40.0 + n % 40, 0.5)
+            post_of_sender(instrument, sender, DUE, END, sender, 40.0 + n % 40)
+        play(instrument, 8 if n % 8 == 0 else 0)  # or the ring is full
+    assert instrument.frame < DUE
+    applied = play(instrument, DUE + RATE // 4 - instrument.frame)
+    found = [sum(command[1:3] == (BEGIN, sender) for command in applied) for sender in senders]
+    assert max(found) - min(found) <= 1
+    assert min(found) * 4 * 44_100 / RATE > 1_000
+    assert max(found) < room
+    assert instrument.dropped_events == 0
+
+
 def test_a_sender_that_fills_its_queue_loses_its_own_events_alone() -> None:
     instrument = live()
     room = SENDER_QUEUE - RESERVE

@@ -8,11 +8,12 @@ from fuzz.target import Program, target, written
 
 from yehu_server.errors import ScoreError
 from yehu_server.params.table import find
+from yehu_server.scores.events import Setting
 from yehu_server.scores.jianpu.reader import parse_jianpu
 from yehu_server.scores.jianpu.writer import jianpu_of
 from yehu_server.scores.musicxml.reader import parse, read_musicxml, written_of
 from yehu_server.scores.musicxml.writer import musicxml_of
-from yehu_server.scores.score import LONGEST_DURATION_H, Setting
+from yehu_server.scores.score import LONGEST_DURATION_H
 from yehu_server.scores.written.notated import MARKS, SIGNS, SPANS, Written
 from yehu_server.scores.written.performed import performed
 from yehu_server.scores.written.text import lines_of

@@ -12,8 +12,8 @@ from yehu_server.playing.calibration_store import calibration_for
 from yehu_server.playing.mapping import DEFAULT, MPE
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.scores.capture_header import SessionStart, header_of
+from yehu_server.scores.events import ScoreEvent, Setting
 from yehu_server.scores.reading import ReadOptions, is_written, read_any
-from yehu_server.scores.score import ScoreEvent, Setting
 from yehu_server.util.files import shipped_folder, write_text
 
 LEVEL = {"level": "wasm32"}

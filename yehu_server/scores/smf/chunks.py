@@ -9,7 +9,7 @@ import struct
 from dataclasses import dataclass, field
 
 from yehu_server.errors import ScoreError
-from yehu_server.scores.smf.track import DamageReport, KnownMessages, Track, decode
+from yehu_server.scores.smf.track import DamageReport, Decoded, Track, decode
 
 JUNK_BYTES = 65_536  # among which a header is searched
 HEADER = b"MThd\0\0\0"  # with the length that all headers have, so that prose is none
@@ -119,14 +119,15 @@ class Part:
     tracks: list[Track] = field(default_factory=list)
 
 
-def read_parts(data: bytes, start: int, end: int, faults: DamageReport) -> list[Part]:
+def read_parts(decoded: Decoded, start: int, end: int, faults: DamageReport) -> list[Part]:
     """Read the header and the tracks of a file, or of several that were joined.
 
-    They lie from byte `start`, where a header begins, to `end`. Raises ScoreError where the first
-    header is damaged, or where there is more than memory should hold.
+    They lie from byte `start`, where a header begins, to `end`; their messages are added to
+    `decoded`. Raises ScoreError where the first header is damaged, or where there is more than
+    memory should hold.
     """
     parts: list[Part] = []
-    known = KnownMessages()
+    data = decoded.data
     tracks, room, pos = 0, MAX_EVENTS, start
     for _ in range(MAX_CHUNKS + 2):  # after the header, and the end
         if pos >= end:
@@ -141,7 +142,7 @@ def read_parts(data: bytes, start: int, end: int, faults: DamageReport) -> list[
         elif tag == b"MTrk":
             if tracks == MAX_TRACKS:
                 raise ScoreError(f"has more than {MAX_TRACKS} tracks")
-            track, pos = _track(data, pos, end, room, faults, known)
+            track, pos = _track(decoded, pos, end, room, faults)
             if track.events > room:
                 raise ScoreError(f"has more than {MAX_EVENTS} events")
             parts[-1].tracks.append(track)
@@ -191,17 +192,18 @@ def _header(data: bytes, at: int, end: int, faults: DamageReport) -> tuple[Part 
 
 
 def _track(
-    data: bytes, at: int, end: int, room: int, faults: DamageReport, known: KnownMessages
+    decoded: Decoded, at: int, end: int, room: int, faults: DamageReport
 ) -> tuple[Track, int]:
     """A track, and the byte after it.
 
     Its length is believed where a chunk follows or the file ends. If not, the track is read up to
     its own end, or to where the next one seems to begin.
     """
+    data = decoded.data
     declared = at + 8 + _length(data, at)
     believed = declared <= end and at + 8 <= end and is_chunk(data, declared, end)
     stop = declared if believed else _next(data, min(at + 8, end), end)
-    track = decode(data, min(at + 8, stop), stop, room, faults, known)
+    track = decode(decoded, min(at + 8, stop), stop, room, faults)
     if track.after_end is None:
         if declared > end == stop:
             faults.add("the file is cut short", end)

@@ -7,128 +7,54 @@ of each fault.
 """
 
 import os
-from bisect import bisect_right
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
-from itertools import groupby
+from itertools import accumulate, groupby, pairwise
 from operator import itemgetter
 from pathlib import Path
 
-import mido
 import numpy as np
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.errors import ScoreError
+from yehu_server.scores.events import NOTE_ON, Events
 from yehu_server.scores.score import (
     COMMON_TIME,
     MAX_DURATION_H,
     KeySignature,
     Metre,
     Score,
-    ScoreEvent,
     ScorePart,
     check_duration,
     concatenate,
-    distinct,
     errors_name,
     read_score_bytes,
 )
 from yehu_server.scores.smf.chunks import Part, read_parts, unwrapped
+from yehu_server.scores.smf.messages import (
+    Messages,
+    ended,
+    messages_of,
+    settled,
+    without_resting_wheels,
+)
 from yehu_server.scores.smf.track import (
     SMPTE,
     Clock,
     DamageReport,
-    Placed,
+    Decoded,
     Track,
     checked_division,
     named,
+    times_of,
 )
 from yehu_server.scores.smf.tunings import retuned
 
-# Controllers: all sound off, all notes off, and changes of mode, which end notes too.
-ENDS_ALL = {120, *range(123, 128)}
 MAX_BYTES = 64 * 2**20
 MAX_REST_S = 30  # between the last message and the end of a track
-# Of a state that the last value alone decides: no pedals, selections and modes.
-CONTINUOUS = {1, 2, 4, 7, 8, 10, 11, *range(16, 20), *range(70, 80), *range(91, 96)}
-MOVES = {"pitchwheel", "aftertouch", "polytouch", "control_change"}
 _Song = tuple[list[Track], int, int]  # what sounds together, number of the first, the division
-
-MOD_WHEEL = 1  # controller
-
-
-def ended(messages: Sequence[Placed], faults: DamageReport) -> list[Placed]:
-    """Return messages in order, with a note-off for each note that nothing ends.
-
-    Such a note lasts until another note of its channel begins. Where none does, it lasts as long
-    as the score.
-    """
-    held = _held(messages)
-    if not held:
-        return list(messages)
-    onsets: dict[int, list[int]] = defaultdict(list)  # of each channel, ticks
-    for tick, message, _ in messages:
-        if message.type == "note_on" and message.velocity > 0:
-            onsets[message.channel].append(tick)
-    added: list[Placed] = []
-    for tick, message, at in held:
-        later = onsets[message.channel]
-        place = bisect_right(later, tick)
-        if place < len(later):
-            faults.add("a note without an end stopped at the next one", at)
-            off = mido.Message("note_off", channel=message.channel, note=message.note)
-            added.append((later[place], off, at))
-    return sorted([*added, *messages], key=itemgetter(0))  # stable: before the next note
-
-
-def settled(messages: Sequence[Placed], starts: Sequence[int]) -> list[Placed]:
-    """Return messages without those that another one at the same tick supersedes.
-
-    Of a bend, a pressure or a continuous controller only the last value is heard, where no message
-    of another kind lies between. `starts` are the bytes at which the tracks begin.
-    """
-    kept: list[Placed | None] = []
-    last: dict[tuple[str, int, int, int], int] = {}  # by what is moved, a place in `kept`
-    before = -1
-    for placed in messages:
-        tick, message, at = placed
-        if tick != before and last:
-            last.clear()
-        before = tick
-        kind = message.type
-        number = 0
-        if kind == "control_change":
-            number = message.control
-        elif kind == "polytouch":
-            number = message.note
-        if kind in MOVES and (kind != "control_change" or number in CONTINUOUS):
-            source = kind, message.channel, number, bisect_right(starts, at)
-            if source in last:
-                kept[last[source]] = None
-            last[source] = len(kept)
-        elif last:
-            last.clear()
-        kept.append(placed)
-    return [placed for placed in kept if placed is not None]
-
-
-def _held(messages: Sequence[Placed]) -> list[Placed]:
-    """The note-ons that still hold at the end, in the order of the channels."""
-    held: dict[int, dict[int, Placed]] = defaultdict(dict)  # by channel and key
-    for placed in messages:
-        message = placed[1]
-        kind = message.type
-        if kind == "note_on" and message.velocity > 0:
-            held[message.channel][message.note] = placed
-        elif kind in ("note_on", "note_off"):
-            held[message.channel].pop(message.note, None)
-        elif kind == "control_change" and message.control in ENDS_ALL:
-            held[message.channel].clear()
-    held.pop(PERCUSSION_CHANNEL, None)  # whose notes end by themselves
-    return [placed for notes in held.values() for placed in notes.values()]
 
 
 def read_score(
@@ -161,8 +87,10 @@ def read_score(
 
 def _parse(data: bytes, song: int | None, max_duration_h: float, faults: DamageReport) -> Score:
     start, end = unwrapped(data, faults)
-    parts = read_parts(data, start, end, faults)
-    playable = [part for part in parts if any(track.messages for track in part.tracks)]
+    decoded = Decoded(data)
+    parts = read_parts(decoded, start, end, faults)
+    messages = messages_of(decoded, [track for part in parts for track in part.tracks], faults)
+    playable = [part for part in parts if any(map(_has_messages, part.tracks))]
     if not playable:
         raise ScoreError("has no playable track")
     for part in playable[1:]:
@@ -170,12 +98,16 @@ def _parse(data: bytes, song: int | None, max_duration_h: float, faults: DamageR
     songs = [each for part in playable for each in _songs(part, faults)]
     if song is not None:
         songs = [_chosen(songs, song)]
-    scores = [_play_together(*each, max_duration_h, faults) for each in songs]
+    scores = _scores(songs, messages, max_duration_h, faults)
     if len(scores) == 1:
         return scores[0]
     score = concatenate(scores)
     check_duration(score.duration_s, max_duration_h)
     return score
+
+
+def _has_messages(track: Track) -> bool:
+    return track.after > track.begin
 
 
 def _songs(part: Part, faults: DamageReport) -> list[_Song]:
@@ -198,47 +130,82 @@ def _chosen(songs: Sequence[_Song], song: int) -> _Song:
     if not 0 < song <= len(songs):
         count = "one song" if len(songs) == 1 else f"{len(songs)} songs"
         raise ScoreError(f"has {count}: there is no song {song}")
-    if not any(track.messages for track in songs[song - 1][0]):
+    if not any(map(_has_messages, songs[song - 1][0])):
         raise ScoreError(f"song {song} has nothing to play")
     return songs[song - 1]
 
 
-def _play_together(
-    tracks: Sequence[Track], first: int, division: int, max_duration_h: float, faults: DamageReport
+def _scores(
+    songs: Sequence[_Song], messages: Messages, max_duration_h: float, faults: DamageReport
+) -> list[Score]:
+    """The score of each song; the messages of all are chosen and timed at once."""
+    lasts = [max(tracks, key=lambda track: track.end) for tracks, *_ in songs]
+    begins = [0, *accumulate(last.end + 1 for last in lasts)]  # where songs begin, in ticks of all
+    messages = _placed(songs, messages, begins)
+    places = _places(messages)
+    messages = ended(settled(without_resting_wheels(messages)), faults)
+    bounds = np.searchsorted(messages.song, np.arange(len(songs) + 1))
+    latest = np.append(messages.tick, 0)[bounds[1:] - 1].tolist()
+    clocks, ends_s = [], []
+    for number, (tracks, _, division) in enumerate(songs):
+        # Sorting is stable: at one tick, the order of the tracks stays.
+        tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
+        clock, last = Clock(division, tempos), lasts[number]
+        has_messages = bounds[number] < bounds[number + 1]
+        latest_s = clock.seconds(latest[number] - begins[number]) if has_messages else 0.0
+        end_s = clock.seconds(last.end)
+        if end_s > latest_s + MAX_REST_S:
+            faults.add(f"silence at the end cut to {MAX_REST_S} s", last.end_at)
+            end_s = latest_s + MAX_REST_S
+        try:
+            check_duration(end_s, max_duration_h)
+        except ScoreError as error:
+            raise ScoreError(f"{error}{_longest_rest(tracks, clock, end_s)}") from None
+        clocks.append(clock)
+        ends_s.append(end_s)
+    times = times_of(clocks, begins, messages.tick)
+    events = Events(*times, messages.track, messages.code)
+    return [
+        _score(song, clock, events.where(slice(begin, after)), end_s, own)
+        for song, clock, begin, after, end_s, own in zip(
+            songs, clocks, bounds.tolist(), bounds[1:].tolist(), ends_s, places, strict=False
+        )
+    ]
+
+
+def _placed(songs: Sequence[_Song], messages: Messages, begins: Sequence[int]) -> Messages:
+    """The messages of songs in order, on an axis of ticks where these begin at some."""
+    tracks = [
+        (song, number, begins[song], track.after - track.begin)
+        for song, (tracks, first, _) in enumerate(songs)
+        for number, track in enumerate(tracks, start=first)
+    ]
+    song, number, begin, counts = np.array(tracks).T
+    own = messages.where(slice(songs[0][0][0].begin, songs[-1][0][-1].after))
+    song, number, begin = (np.repeat(each, counts) for each in (song, number, begin))
+    own = own._replace(tick=own.tick + begin, song=song, track=number)
+    return own.where(np.argsort(own.tick, kind="stable"))
+
+
+def _places(messages: Messages) -> Iterator[list[tuple[int, int]]]:
+    """The tracks and channels with notes, of each song in order; percussion does not count."""
+    is_note = (messages.kind == NOTE_ON) & (messages.code >> 16 & 15 != PERCUSSION_CHANNEL)
+    notes = messages.where(is_note)
+    found = np.unique(notes.song << 32 | notes.track << 4 | notes.code >> 16 & 15)
+    bounds = np.searchsorted(found >> 32, range(messages.song[-1] + 2)).tolist()
+    places = [*zip((found >> 4 & 0xFFFF).tolist(), (found & 15).tolist(), strict=True)]
+    return (places[begin:after] for begin, after in pairwise(bounds))
+
+
+def _score(
+    song: _Song, clock: Clock, events: Events, end_s: float, places: Sequence[tuple[int, int]]
 ) -> Score:
-    # Sorting is stable: at one tick, the order of the tracks and within them stays.
-    tempos = sorted((tempo for track in tracks for tempo in track.tempos), key=itemgetter(0))
-    messages = sorted((placed for track in tracks for placed in track.messages), key=itemgetter(0))
-    starts = [track.start_at for track in tracks]  # a message's byte is within its track
-    found = [distinct(map(itemgetter(1), track.messages)) for track in tracks]
-    kinds = {message.type for own in found for message in own}
-    if "control_change" in kinds:
-        messages = without_resting_wheels(messages)
-    if not kinds.isdisjoint(MOVES):
-        messages = settled(messages, starts)
-    messages = ended(messages, faults)
-    clock = Clock(division, tempos)
-    last = max(tracks, key=lambda track: track.end)
-    end_s = clock.seconds(last.end)
-    latest_s = (clock.seconds(messages[-1][0]) if messages else 0.0) + MAX_REST_S
-    if end_s > latest_s:
-        faults.add(f"silence at the end cut to {MAX_REST_S} s", last.end_at)
-        end_s = latest_s
-    try:
-        check_duration(end_s, max_duration_h)
-    except ScoreError as error:
-        raise ScoreError(f"{error}{_longest_rest(tracks, clock, end_s)}") from None
-    events = _events(messages, clock, starts, first)
+    """The score of a song with notes at some tracks and channels."""
+    tracks, first, division = song
     signatures = sorted((each for track in tracks for each in track.metres), key=itemgetter(0))
     metres = [Metre(clock.beat(tick), quarters) for tick, quarters in signatures]
     tunings = sorted((each for track in tracks for each in track.tunings), key=itemgetter(0))
     tuned, remarks = retuned(events, [(clock.seconds(tick), body) for tick, body in tunings])
-    places = {
-        (number, message.channel)
-        for number, own in enumerate(found, start=first)
-        for message in own
-        if message.type == "note_on" and message.channel != PERCUSSION_CHANNEL
-    }
     names, encoding = named(tracks)
     parts = _parts(places, dict(enumerate(names, start=first)))
     if encoding:
@@ -251,33 +218,6 @@ def _play_together(
         remarks=remarks,
         keys=_keys(tracks, division),
     )
-
-
-def without_resting_wheels(messages: Sequence[Placed]) -> list[Placed]:
-    """The messages without CC 1 of channels where it is 0 throughout: a wheel that nobody moves."""
-    found: dict[int, list[int]] = {}  # by channel: places of its moves
-    moved: set[int] = set()
-    for place, (_, message, _) in enumerate(messages):
-        if message.type == "control_change" and message.control == MOD_WHEEL:
-            found.setdefault(message.channel, []).append(place)
-            if message.value > 0:
-                moved.add(message.channel)
-    resting = {at for channel, places in found.items() if channel not in moved for at in places}
-    if not resting:
-        return list(messages)
-    return [placed for place, placed in enumerate(messages) if place not in resting]
-
-
-def _events(
-    messages: Sequence[Placed], clock: Clock, starts: Sequence[int], first: int
-) -> tuple[ScoreEvent, ...]:
-    """Messages at their times; each is of the track within whose bytes it lies."""
-    places = np.fromiter(map(itemgetter(2), messages), np.int64, len(messages))
-    tracks = first + np.maximum(np.searchsorted(starts, places, side="right") - 1, 0)
-    times = clock.times(map(itemgetter(0), messages))
-    columns = zip(messages, times, tracks.tolist(), strict=True)
-    rows = [(seconds, message, beat, track) for (_, message, _), (seconds, beat), track in columns]
-    return tuple(map(partial(tuple.__new__, ScoreEvent), rows))
 
 
 def _keys(tracks: Sequence[Track], division: int) -> tuple[KeySignature, ...]:
@@ -302,7 +242,7 @@ def _longest_rest(tracks: Sequence[Track], clock: Clock, duration_s: float) -> s
     return f" (most of it is the rest before byte {at})" if 2.0 * seconds > duration_s else ""
 
 
-def _parts(places: set[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePart, ...]:
+def _parts(places: Sequence[tuple[int, int]], names: dict[int, str]) -> tuple[ScorePart, ...]:
     """The tracks that have notes, of the tracks and channels that do; of one track its channels."""
     tracks = sorted({track for track, _ in places})
     channels = sorted({channel for _, channel in places})

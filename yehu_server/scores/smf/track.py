@@ -2,11 +2,13 @@
 
 import math
 import re
+from array import array
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
-import mido
+import numpy as np
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.encodings import NAMES, decoded, encoding_of
@@ -14,6 +16,9 @@ from yehu_server.scores.smf.tunings import MAX_MESSAGES, is_tuning
 
 MAX_KINDS = 30  # listed separately; a hostile file could have one for each of its bytes
 OTHERS = "further faults of other kinds"
+
+
+Array = Any
 
 
 class DamagedError(ScoreError):
@@ -26,12 +31,12 @@ class DamageReport:
     def __init__(self) -> None:
         self._found: dict[str, tuple[int, int]] = {}  # how often, and the first byte
 
-    def add(self, what: str, at: int) -> None:
-        """Note a fault at a byte of the file, counted from 0."""
+    def add(self, what: str, at: int, count: int = 1) -> None:
+        """Note a fault at a byte of the file, counted from 0, or several, first there."""
         if what not in self._found and len(self._found) >= MAX_KINDS:
             what = OTHERS
         times, first = self._found.get(what, (0, at))
-        self._found[what] = (times + 1, min(first, at))
+        self._found[what] = (times + count, min(first, at))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -56,6 +61,7 @@ DEFAULT_FRAME_TICKS = 40  # with 25 frames a second, milliseconds
 TRUE_FRAMES = {29: (30_000, 1001)}  # "29" frames a second are the 29.97 of drop-frame video
 FILM_FRAMES = (24, 25, 29, 30)
 SMPTE = 0x8000
+UNPLAYED = np.iinfo(np.int64).max  # units of time that no score lasts
 META, SYSEX, ESCAPE = 0xFF, 0xF0, 0xF7
 TRACK_NAME, END_OF_TRACK, SET_TEMPO, TIME_SIGNATURE, KEY_SIGNATURE = 0x03, 0x2F, 0x51, 0x58, 0x59
 MAX_SHARPS = 7  # or flats, of a key signature
@@ -65,7 +71,6 @@ SYSTEM_DATA_BYTES = {0xF1: 1, 0xF2: 2, 0xF3: 1}
 NUMBER_BYTES = 4  # of a variable-length number, as the format has it
 LONGEST_NUMBER_BYTES = 8  # as some writers have it, padded
 LARGEST_NUMBER = 0x0FFF_FFFF
-Placed = tuple[int, mido.Message, int]  # tick, message, byte in the file
 
 
 def checked_division(division: int, at: int, faults: DamageReport) -> int:
@@ -99,7 +104,7 @@ class Clock:
         else:
             self._units_per_second = division * 1_000_000
             changes = [(0, DEFAULT_TEMPO), *tempos]
-        self._per_beat = math.nan if division >= SMPTE else division
+        self.per_beat: float = math.nan if division >= SMPTE else division
         self._ticks: list[int] = []
         self._spans: list[tuple[int, int]] = []  # units so far, units a tick from here on
         for tick, rate in changes:
@@ -118,24 +123,39 @@ class Clock:
 
     def beat(self, tick: int) -> float:
         """The time of a tick in quarter notes; NaN where frames are counted."""
-        return tick / self._per_beat
+        return tick / self.per_beat
 
-    def times(self, ticks: Iterable[int]) -> Iterator[tuple[float, float]]:
-        """The same of ticks in order: seconds and beat of each."""
-        spans = zip(self._ticks, self._spans, strict=True)
-        (begin, (so_far, rate)), following = next(spans), next(spans, None)
-        per_second, per_beat = self._units_per_second, self._per_beat
-        for tick in ticks:
-            while following is not None and tick >= following[0]:
-                (begin, (so_far, rate)), following = following, next(spans, None)
-            yield (so_far + (tick - begin) * rate) / per_second, tick / per_beat
+    @property
+    def spans(self) -> Iterator[tuple[int, int, int, int]]:
+        """From each tempo on: its tick, units so far, units a tick, and units a second."""
+        for tick, (so_far, rate) in zip(self._ticks, self._spans, strict=True):
+            yield tick, min(so_far, UNPLAYED), rate, self._units_per_second
+
+
+def times_of(clocks: Sequence[Clock], begins: Sequence[int], ticks: Array) -> tuple[Array, Array]:
+    """The seconds and beats of ticks that are played [shape=(ticks,)].
+
+    Ticks are those of the songs of some clocks, which begin at some ticks.
+    """
+    spans = [
+        (begin + tick, begin, *span)
+        for clock, begin in zip(clocks, begins, strict=False)
+        for tick, *span in clock.spans
+    ]
+    since, begin, so_far, rate, per_second = np.array(spans).T
+    per_beat = np.array([clock.per_beat for clock in clocks])
+    at = np.searchsorted(since, ticks, side="right") - 1
+    units = so_far[at] + (ticks - since[at]) * rate[at]
+    song = np.searchsorted(begins, ticks, side="right") - 1
+    return units / per_second[at], (ticks - begin[at]) / per_beat[song]
 
 
 @dataclass
 class Track:
-    """The messages of a track and its other events, at ticks."""
+    """Where a track's messages are, and its other events, at ticks."""
 
-    messages: list[Placed] = field(default_factory=list)
+    begin: int = 0  # place of its first message among those of the file, and after its last
+    after: int = 0
     tempos: list[tuple[int, int]] = field(default_factory=list)  # in us a quarter
     metres: list[tuple[int, float]] = field(default_factory=list)  # quarters a bar
     keys: list[tuple[int, int]] = field(default_factory=list)  # sharps, or below 0 flats
@@ -150,161 +170,121 @@ class Track:
     after_end: int | None = None  # byte after the end-of-track event
 
 
-@dataclass
-class _Cursor:
-    """A position in a track; a step past the end raises EOFError."""
+class Decoded:
+    """The channel messages of a file as they are found, in columns."""
 
-    data: bytes
-    pos: int
-    end: int
-
-    def take(self, length: int) -> bytes:
-        if self.pos + length > self.end:
-            raise EOFError
-        self.pos += length
-        return self.data[self.pos - length : self.pos]
-
-    def byte(self) -> int:
-        if self.pos >= self.end:
-            raise EOFError
-        self.pos += 1
-        return self.data[self.pos - 1]
-
-    def at_status(self) -> bool:
-        if self.pos >= self.end:
-            raise EOFError
-        return self.data[self.pos] >= 0x80
-
-    def skip_to_status(self) -> None:
-        found = STATUS.search(self.data, self.pos, self.end)
-        if found is None:
-            raise EOFError
-        self.pos = found.start()
-
-    def number(self, faults: DamageReport) -> int:
-        """A variable-length number; one that is padded is read to its end."""
-        value = 0
-        for place in range(LONGEST_NUMBER_BYTES):
-            byte = self.byte()
-            if place == NUMBER_BYTES:
-                faults.add(f"a number of more than {NUMBER_BYTES} bytes", self.pos - place - 1)
-            value = value << 7 | byte & 0x7F
-            if byte < 0x80:
-                break
-        return min(value, LARGEST_NUMBER)
+    def __init__(self, data: bytes) -> None:
+        self.data = data
+        # Of each: its tick in its track, its byte in the file, that of its data, its status.
+        self.columns = tuple(array("q") for _ in range(4))
 
 
-OF_ALL = ("type", "time", "channel")  # what all messages have
-
-
-class MessagesOfStatus(dict[bytes, "mido.Message | None"]):
-    """The messages of a status by data bytes, None if damaged; each made once, as it takes long."""
-
-    def __init__(self, status: int) -> None:
-        super().__init__()
-        self.length = 1 if status & 0xE0 == 0xC0 else 2
-        self._plain = mido.Message.from_bytes([status, *[0] * self.length])
-        self._names = [name for name in vars(self._plain) if name not in OF_ALL]
-
-    def __missing__(self, body: bytes) -> mido.Message | None:
-        message = None
-        if body.isascii():  # no byte above 127
-            message = self._plain.copy()  # without checks, which take three times as long
-            if len(self._names) == len(body):
-                vars(message).update(zip(self._names, body, strict=True))
-            else:
-                vars(message)["pitch"] = body[0] + (body[1] << 7) - 8192
-        self[body] = message
-        return message
-
-
-class KnownMessages(dict[int, MessagesOfStatus]):
-    """The messages of a file, by status."""
-
-    def __missing__(self, status: int) -> MessagesOfStatus:
-        return self.setdefault(status, MessagesOfStatus(status))
-
-
-def decode(
-    data: bytes, start: int, stop: int, room: int, faults: DamageReport, known: KnownMessages
-) -> Track:
+def decode(decoded: Decoded, start: int, stop: int, room: int, faults: DamageReport) -> Track:
     """Read the events from one byte to another, as far as possible.
 
-    Reading ends with the first event beyond `room`, so that `events` is larger then. `known`: the
-    messages of the same file so far.
+    Reading ends with the first event beyond `room`, so that `events` is larger then.
     """
-    track = Track(start_at=start)
-    cursor = _Cursor(data, start, stop)
-    keep = track.messages.append
-    tick = longest = events = 0
-    at = pos = start
-    running, messages = 0, known[0x80]  # kept across metas and sysex, as some writers rely on it
-    try:
-        while pos < stop and events <= room:
-            at = pos
-            delta = data[at]
-            pos = at + 1
-            if delta >= 0x80:  # few are
-                cursor.pos = at
-                delta = cursor.number(faults)
-                pos = cursor.pos
-            tick += delta
-            if pos < stop and data[pos] < 0x80 and running:
-                status = running
-            else:
-                cursor.pos = pos
-                if not running and not cursor.at_status():
-                    faults.add("data without a status byte skipped", pos)
-                    cursor.skip_to_status()
-                status = cursor.byte()
-                pos = cursor.pos
-            if status < SYSEX:
-                if status != running:
-                    running, messages = status, known[status]
-                after = pos + messages.length
-                message = messages[data[pos:after] if after <= stop else cursor.take(stop)]
-                pos = after
-                if message is not None:
-                    keep((tick, message, at))
-                else:
-                    # Dropped at its full length: mostly this is a velocity above 127, and the
-                    # next message is intact.
-                    faults.add("a damaged message dropped", at)
-            else:
-                _take_other(track, cursor, status, tick, at, faults)
-                pos = cursor.pos
-            track.end, track.end_at = tick, at
-            if track.after_end is not None:
+    data, columns = decoded.data, decoded.columns
+    track = Track(start_at=start, begin=len(columns[0]))
+    keep_tick, keep_at, keep_body, keep_status = (column.append for column in columns)
+    tick = longest = events = end = end_at = 0
+    at = pos = start  # the latter beyond `stop` where an event is cut
+    running = length = 0  # kept across metas and sysex, as some writers rely on it
+    while pos < stop and events <= room:
+        at = pos
+        delta = data[at]
+        pos = at + 1
+        if delta >= 0x80:
+            delta, pos = _number(data, at, stop, faults)
+        tick += delta
+        status = data[pos] if pos < stop else 0
+        if status >= 0x80:
+            pos += 1
+        elif running:
+            status = running
+        else:
+            status, pos = _next_status(data, pos, stop, faults)
+        if status < SYSEX:
+            if status != running:
+                running, length = status, 1 if status & 0xE0 == 0xC0 else 2
+            body = pos
+            pos += length
+            if pos > stop:
                 break
-            if delta > longest:
-                longest = delta
-                track.longest = delta, tick, at
-            events += 1
-    except EOFError:
+            keep_tick(tick)
+            keep_at(at)
+            keep_body(body)
+            keep_status(status)
+        else:
+            pos = _take_other(track, data, pos, stop, (status, tick, at), faults)
+            if pos > stop:
+                break
+        end, end_at = tick, at
+        if track.after_end is not None:
+            break
+        if delta > longest:
+            longest = delta
+            track.longest = delta, tick, at
+        events += 1
+    if pos > stop:
         track.is_whole = False
         faults.add("a track ends in the middle of an event", at)
-    track.events = events
+    track.events, track.end, track.end_at, track.after = events, end, end_at, len(columns[0])
     return track
 
 
+def _number(data: bytes, pos: int, stop: int, faults: DamageReport) -> tuple[int, int]:
+    """A variable-length number, and the byte after it; one that is padded is read to its end."""
+    value = 0
+    for place in range(LONGEST_NUMBER_BYTES):
+        if pos + place >= stop:
+            return 0, stop + 1
+        byte = data[pos + place]
+        if place == NUMBER_BYTES:
+            faults.add(f"a number of more than {NUMBER_BYTES} bytes", pos)
+        value = value << 7 | byte & 0x7F
+        if byte < 0x80:
+            break
+    return min(value, LARGEST_NUMBER), pos + place + 1
+
+
+def _next_status(data: bytes, pos: int, stop: int, faults: DamageReport) -> tuple[int, int]:
+    """The first status byte from here on, and the byte after it."""
+    if pos < stop:
+        faults.add("data without a status byte skipped", pos)
+    found = STATUS.search(data, pos, stop)
+    return (data[found.start()], found.end()) if found else (SYSEX, stop + 1)
+
+
 def _take_other(
-    track: Track, cursor: _Cursor, status: int, tick: int, at: int, faults: DamageReport
-) -> None:
-    """Read an event that is no channel message, after its status."""
-    if status == META:
-        kind = cursor.byte()
-        body = cursor.take(cursor.number(faults))
-        if kind == END_OF_TRACK:
-            track.after_end = cursor.pos
-        else:
-            _keep(track, tick, kind, body, at, faults)
-    elif status in (SYSEX, ESCAPE):
-        body = cursor.take(cursor.number(faults))
-        if status == SYSEX and is_tuning(body) and len(track.tunings) < MAX_MESSAGES:
-            track.tunings.append((tick, body))
-    else:
+    track: Track,
+    data: bytes,
+    pos: int,
+    stop: int,
+    place: tuple[int, int, int],
+    faults: DamageReport,
+) -> int:
+    """Read an event that is no channel message, after its status; return the byte after it.
+
+    `place`: its status, tick, and byte.
+    """
+    status, tick, at = place
+    if status not in (META, SYSEX, ESCAPE):
         faults.add("a system message, which no file should hold, skipped", at)
-        cursor.take(SYSTEM_DATA_BYTES.get(status, 0))
+        return pos + SYSTEM_DATA_BYTES.get(status, 0)
+    is_meta = status == META
+    length, begin = _number(data, pos + is_meta, stop, faults)
+    after = begin + length
+    if after > stop:
+        return after
+    body = data[begin:after]
+    if is_meta and data[pos] == END_OF_TRACK:
+        track.after_end = after
+    elif is_meta:
+        _keep(track, tick, data[pos], body, at, faults)
+    elif status == SYSEX and is_tuning(body) and len(track.tunings) < MAX_MESSAGES:
+        track.tunings.append((tick, body))
+    return after
 
 
 def _keep(track: Track, tick: int, kind: int, body: bytes, at: int, faults: DamageReport) -> None:

@@ -9,9 +9,20 @@ RP-020]
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from yehu_server.core.midi import registered_parameters as rpn
 from yehu_server.core.midi.registered_parameters import CENTRE
-from yehu_server.scores.score import BEND, Score, ScoreEvent, Setting
+from yehu_server.scores.events import (
+    BEND,
+    CONTROL,
+    NOTE_OFF,
+    NOTE_ON,
+    PITCHWHEEL,
+    Events,
+    Setting,
+)
+from yehu_server.scores.score import Score
 
 UNIVERSAL = (0x7E, 0x7F)  # not in real time, in real time
 DEVICE_CONTROL, TUNING = 4, 8
@@ -19,6 +30,7 @@ MASTER_FINE, MASTER_COARSE = 3, 4
 SCALE_1, SCALE_2 = 8, 9  # bytes for each note of the scale
 MAX_BYTES, MAX_MESSAGES = 512, 1000  # of a message; messages of a track
 FINE_CENTRE = 8192
+SELECTORS = [rpn.RPN_COARSE, rpn.RPN_FINE, rpn.NRPN_COARSE, rpn.NRPN_FINE, rpn.DATA_ENTRY]
 SINGLE_KEYS = "tuning of single keys by system exclusive is not supported"
 BENDS_TOO = "tuning by system exclusive is rounded to semitones on channels with pitch bends"
 
@@ -71,70 +83,80 @@ class _Tuned:
 
 
 def retuned(
-    events: Sequence[ScoreEvent], tunings: Sequence[tuple[float, bytes]]
-) -> tuple[tuple[ScoreEvent, ...], tuple[str, ...]]:
+    events: Events, tunings: Sequence[tuple[float, bytes]]
+) -> tuple[Events, tuple[str, ...]]:
     """Return events as `tunings` (s, in order, of `is_tuning`) move them, and remarks."""
     if not tunings:
-        return tuple(events), ()
-    bent = {e.message.channel for e in events if e.message.type == "pitchwheel"}
+        return events, ()
+    codes = events.code.copy()
+    bent = {*(codes[events.kind == PITCHWHEEL] >> 16 & 15).tolist()}
     tuned, left = _Tuned(), list(tunings)[::-1]
-    moved: dict[tuple[int, int], int] = {}  # by channel and key as written, where it sounds
+    moved: dict[int, int] = {}  # by channel and key as written, where it sounds
     bends: dict[int, float] = {}
     remarks: dict[str, None] = {}
-    found: list[ScoreEvent] = []
-    for event in events:
-        while left and left[-1][0] <= event.time_s:
+    settings: dict[Setting, int] = {}  # and their codes
+    before: list[tuple[int, int]] = []  # places of notes, and codes of settings before them
+
+    def take(time_s: float) -> None:
+        while left and left[-1][0] <= time_s:
             if not tuned.take(left.pop()[1]):
                 remarks[SINGLE_KEYS] = None
-        message = event.message
-        if message.type not in ("note_on", "note_off"):
-            found.append(event)
-            continue
-        at = (message.channel, message.note)
-        if message.type == "note_on" and message.velocity > 0:
-            offset = tuned.offset(*at)
-            key = min(max(message.note + round(offset), 0), 127)
-            moved[at] = key
+
+    places = np.flatnonzero((events.kind == NOTE_ON) | (events.kind == NOTE_OFF))
+    columns = places, events.time_s[places], codes[places] >> 8, events.is_struck[places]
+    sounding = []
+    for place, time_s, at, is_struck in zip(*(each.tolist() for each in columns), strict=True):
+        take(time_s)
+        channel, note = at >> 8 & 15, at & 127
+        source = channel << 7 | note
+        if is_struck:
+            offset = tuned.offset(channel, note)
+            key = min(max(note + round(offset), 0), 127)
+            moved[source] = key
             bend = round(offset - round(offset), 9)
-            if bend and message.channel in bent:
+            if bend and channel in bent:
                 remarks[BENDS_TOO] = None
-            elif bend != bends.get(message.channel, 0.0):
-                bends[message.channel] = bend
-                setting = Setting(BEND, bend or None, message.channel)
-                found.append(event._replace(message=setting))
+            elif bend != bends.get(channel, 0.0):
+                bends[channel] = bend
+                setting = Setting(BEND, bend or None, channel)
+                before.append((place, settings.setdefault(setting, -1 - len(settings))))
         else:
-            key = moved.pop(at, message.note)
-        same = key == message.note
-        found.append(event if same else event._replace(message=message.copy(note=key)))
-    return tuple(found), tuple(remarks)
+            key = moved.pop(source, note)
+        sounding.append(key)
+    if len(codes):
+        take(events.time_s[-1])
+    codes[places] = codes[places] & ~0x7F00 | np.array(sounding, np.int64) << 8
+    found = events.with_codes(codes, tuple(settings))
+    return found.with_before(before), tuple(remarks)
 
 
 def transposed_keys(score: Score) -> dict[int, float]:
     """Return the semitones above their keys of notes that are tuned, by the numbers of events."""
+    events = score.events
+    kind, first = events.kind, events.first
+    is_control = (kind == CONTROL) & np.isin(first, SELECTORS)
+    if not (is_control & (first == rpn.DATA_ENTRY)).any():
+        return {}
     selected: dict[int, list[int]] = {}  # by channel: coarse and fine half of the parameter
     coarse: dict[int, float] = {}
     fine: dict[int, float] = {}
     found: dict[int, float] = {}
-    for number, event in enumerate(score.events):
-        message = event.message
-        kind = message.type
-        if kind == "note_on":
-            if (coarse or fine) and message.velocity > 0:
-                by = coarse.get(message.channel, 0.0) + fine.get(message.channel, 0.0)
-                if by:
-                    found[number] = by
-        elif kind == "reset":
-            for held in (selected, coarse, fine):
-                held.clear()
-        elif kind == "control_change":
-            channel, value = message.channel, message.value
-            chosen = selected.get(channel) if message.control == rpn.DATA_ENTRY else None
-            if message.control in (rpn.RPN_COARSE, rpn.RPN_FINE):
-                selected.setdefault(channel, [-1, -1])[message.control == rpn.RPN_FINE] = value
-            elif message.control in (rpn.NRPN_COARSE, rpn.NRPN_FINE):
-                selected[channel] = [-1, -1]
-            elif chosen == [0, rpn.COARSE_TUNING]:
-                coarse[channel] = float(value - CENTRE)
-            elif chosen == [0, rpn.FINE_TUNING]:
-                fine[channel] = (value - CENTRE) / CENTRE
+    numbers = np.flatnonzero(events.is_struck | is_control | (kind < 0))
+    for number, code in zip(numbers.tolist(), events.code[numbers].tolist(), strict=True):
+        channel, control, value = code >> 16 & 15, code >> 8 & 127, code & 127
+        if code < 0:
+            if events.others[-1 - code].type == "reset":
+                for held in (selected, coarse, fine):
+                    held.clear()
+        elif code >> 20 == NOTE_ON:
+            if (coarse or fine) and (by := coarse.get(channel, 0.0) + fine.get(channel, 0.0)):
+                found[number] = by
+        elif control in (rpn.RPN_COARSE, rpn.RPN_FINE):
+            selected.setdefault(channel, [-1, -1])[control == rpn.RPN_FINE] = value
+        elif control in (rpn.NRPN_COARSE, rpn.NRPN_FINE):
+            selected[channel] = [-1, -1]
+        elif selected.get(channel) == [0, rpn.COARSE_TUNING]:
+            coarse[channel] = float(value - CENTRE)
+        elif selected.get(channel) == [0, rpn.FINE_TUNING]:
+            fine[channel] = (value - CENTRE) / CENTRE
     return found

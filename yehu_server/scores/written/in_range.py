@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.playing.stringing import range_text
-from yehu_server.scores.octaves import NoteSpan, Octaves, octaves_of
+from yehu_server.scores.octaves import NoteSpan, NoteSpans, Octaves, octaves_of
 from yehu_server.scores.tune_part import melodic_part
 from yehu_server.scores.written.mark_settings import harmonic_of
 from yehu_server.scores.written.notated import Grace, Note, Part, Written
@@ -24,18 +24,18 @@ def default_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
     tune = written.tune
     if tune is None:
         parts = [[span_of(note, within) for note in part.notes] for part in written.parts]
-        tune = melodic_part(written.names, parts, within)
+        tune = melodic_part(written.names, NoteSpans.of(parts), within)
     return [] if tune is None else [tune]
 
 
 def moved_part(part: Part, within: NoteRange = YEHU) -> tuple[Part, Octaves]:
     """Return a part in the range of an instrument, and by how many octaves its notes were moved."""
-    octaves = octaves_of([span_of(note, within) for note in part.notes], REST, within)
-    if not any(octaves.of_notes):
+    spans = NoteSpans.of([[span_of(note, within) for note in part.notes]])
+    octaves = octaves_of(spans, REST, within)
+    if not octaves.of_notes.any():
         return part, octaves
-    notes = tuple(
-        _moved(note, 12.0 * by) for note, by in zip(part.notes, octaves.of_notes, strict=True)
-    )
+    moves = (12.0 * octaves.of_notes).tolist()
+    notes = tuple(_moved(note, by) for note, by in zip(part.notes, moves, strict=True))
     return replace(part, notes=notes), octaves
 
 

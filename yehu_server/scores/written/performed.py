@@ -8,11 +8,13 @@ from fractions import Fraction
 from functools import lru_cache
 
 import mido
+import numpy as np
 
 from yehu_server.core.player.harmonics import SAME_PITCH
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError
-from yehu_server.scores.score import BEND, Score, ScoreEvent, ScoreNote, ScorePart, Setting
+from yehu_server.scores.events import BEND, Events, NoteColumns, ScoreEvent, Setting
+from yehu_server.scores.score import Score, ScorePart
 from yehu_server.scores.written.dynamics import Loudness
 from yehu_server.scores.written.mark_settings import (
     ARTICULATION,
@@ -76,7 +78,7 @@ def performed(
     timed.sort()  # no two have the same number
     end_s = max(clock.seconds(end), timed[-1][0])
     return Score(
-        tuple(event for *_, event in timed),
+        Events.of(event for *_, event in timed),
         end_s,
         written.title,
         tuple(warnings),
@@ -93,13 +95,14 @@ def shortest_s(written: Written) -> float:
     return WrittenClock(written).seconds(min(ends, default=0))
 
 
-def leading_notes(written: Written, number: int) -> list[ScoreNote]:
+def leading_notes(written: Written, number: int) -> NoteColumns:
     """A part's notes as written, which all follow, but as long as fermatas have them."""
     at = WrittenClock(written).seconds
-    return [
-        ScoreNote(-1, -1, 0, _key_of(n.pitch), 0, at(n.begins_at), at(n.ends_at), n.begins_at)
+    rows = [
+        (-1, -1, 0, _key_of(n.pitch), 0, at(n.begins_at), at(n.ends_at), n.begins_at, 0)
         for n in written.parts[number].notes
     ]
+    return NoteColumns(*np.array(rows).reshape(-1, len(NoteColumns._fields)).T)
 
 
 class _Performer:

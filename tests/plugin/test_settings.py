@@ -21,7 +21,8 @@ def settings(tmp_path_factory, shown):
         *(building.SOURCE / f"{name}.cpp" for name in ("settings", "text")),
     ]
     flags = ["-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{building.SOURCE}", f"-I{folder}"]
-    subprocess.run(["g++", *flags, *map(str, sources), "-o", str(folder / "settings")], check=True)
+    command = ["g++", *flags, *map(str, sources), "-o", str(folder / "settings")]
+    subprocess.run(command, check=True)
 
     def changed(*changes):
         words = []

@@ -23,7 +23,7 @@ import { showRecording } from "./views/recording.js";
 import { showParameters } from "./views/parameters.js";
 import { showGuide } from "./views/guide.js";
 import { showSeeing } from "./views/see.js";
-import { AT_FIRST, showSounds } from "./views/sounds.js";
+import { beginSound, showSounds } from "./views/sounds.js";
 import { showTabs } from "./views/tabs.js";
 import { showTunes } from "./views/tunes.js";
 import { showPlayingOptions } from "./views/playing_options.js";
@@ -85,9 +85,9 @@ function assemble() {
 
 /** @param {Page} page */
 function connect({ instrument, hands, keys, fingerboard, bow, gallery }) {
-  if (AT_FIRST.length) {
+  if (!isServed) {
     instrument.addEventListener("ready", () => {
-      for (const preset of AT_FIRST) instrument.player.applyPreset(preset);
+      beginSound(instrument.player);
       instrument.prepareHere();
     });
   }

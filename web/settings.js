@@ -11,6 +11,9 @@ const FIRST = {
   isLandingInTune: true,
   view: "slowed",
   panel: "", // '': none
+  sound: "", // the preset that was chosen last; '': the first sound
+  room: "",
+  articulation: 0, // its number
   isTaught: false, // has seen, or skipped, the first gestures
   bestTone: 0, // s of full tone in the challenge
   isSlow: false, // tunes go at two thirds of their pace

@@ -79,6 +79,9 @@ def test_a_state_of_an_older_version_opens_as_it_was(play, shown, tmp_path):
     assert reports["loaded"] == [[1.0]]
     old = dict(line.split("=") for line in kept.splitlines()[1:])
     new = dict(line.split("=") for line in state.read_text().splitlines()[1:])
+    for address in "string", "direction", "pizzicato", "portamento":  # which had no names then
+        each = shown[f"/playing/{address}"]
+        old[each.address] = each.choices[int(float(old[each.address]) - each.lo)]
     assert {address: new[address] for address in old} == old
     state.write_text(kept.replace("=spiccato", "=77"))  # one of those without a name
     values = reported_values(play([f"0 load {state}"], 64)[1])

@@ -116,6 +116,19 @@ def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, show
     assert level_db(played(other)) == pytest.approx(level_db(quiet), abs=0.5)
 
 
+def test_the_state_has_what_was_set_before_a_block_was_processed(plugin, built):
+    import pedalboard
+
+    choose(plugin, "flautando")
+    raw(plugin, "Output gain").raw_value = 0.25
+    other = pedalboard.load_plugin(str(built / "Yehu.vst3"))
+    for state in plugin.raw_state, (played(plugin, frames=BLOCK), plugin.raw_state)[1]:
+        other.raw_state = state
+        assert raw(other, "Preset").string_value == "flautando"
+        assert raw(other, "Output gain").raw_value == pytest.approx(0.25, abs=1e-6)
+        assert raw(other, "Pressure").raw_value == raw(plugin, "Pressure").raw_value
+
+
 @pytest.mark.skipif(shutil.which("pluginval") is None, reason="there is no pluginval")
 def test_pluginval_at_its_strictest_finds_nothing(built, display, tmp_path):
     words = ["--validate", built / "Yehu.vst3", "--strictness-level", "10"]

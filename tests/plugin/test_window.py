@@ -148,6 +148,24 @@ def test_sliders_are_moved_by_mouse_and_keys_and_have_a_usual_value(window, show
     assert becomes(window, gain.number, gain.hi)
 
 
+def test_arrows_step_from_a_preset_that_was_changed_and_its_name_restores_it(window, shown):
+    preset, vibrato = shown["/preset"], shown["/playing/vibrato"]
+    less, name, more = (f"click {x} 324" for x in (20, 92, 166))
+    window("open")
+    for step, click, back in ((0, name, None), (1, more, less), (-1, less, None)):
+        window("click 108 205")
+        assert becomes(window, vibrato.number, 80.0)
+        assert becomes(window, preset.number, 0.0)
+        window(click)
+        assert becomes(window, preset.number, preset.default + step)
+        if back:
+            window(back)
+            assert becomes(window, preset.number, preset.default)
+    for value in 80.0, 0.0:  # which the preset "ordinary" has
+        window("click 108 205")
+        assert becomes(window, vibrato.number, value)
+
+
 def test_values_are_typed(window, shown):
     vibrato, gain, pan = (shown[at] for at in ("/playing/vibrato", "/output/gain", "/room/pan"))
     preset = shown["/preset"]

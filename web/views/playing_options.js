@@ -8,7 +8,7 @@ import { language } from "../i18n.js";
 import { remember, settings } from "../settings.js";
 import { makeSliders, nameFor } from "./slider.js";
 
-const ARTICULATION = "/playing/articulation";
+export const ARTICULATION = "/playing/articulation";
 const SLIDERS = { "/playing/volume": "ways.volume", "/playing/vibrato": "ways.vibrato" };
 
 /** @param {Page} page */
@@ -52,7 +52,10 @@ function articulations(player) {
     ]);
   });
   const name = () => nameFor(ARTICULATION);
-  const select = makeSelect(name, options, (value) => player.write(ARTICULATION, Number(value)));
+  const select = makeSelect(name, options, (value) => {
+    player.write(ARTICULATION, Number(value));
+    remember({ articulation: Number(value) });
+  });
   const follow = () => {
     const number = Math.round(player.value(ARTICULATION));
     const chosen = String(number < options.length ? number : 0);

@@ -18,11 +18,22 @@ import facts from "../facts.js";
 import { onLanguage, translate, translateOr } from "../i18n.js";
 import { MAPPINGS } from "../playing/learned.js";
 import { find as findParameter } from "../playing/table.js";
+import { remember, settings } from "../settings.js";
 import { sourceName } from "./learn.js";
+import { ARTICULATION } from "./playing_options.js";
 import { makeSliders, nameFor, written } from "./slider.js";
 
 /** Presets that the page begins with; a server has a sound of its own. */
-export const AT_FIRST = isServed ? [] : ["vibrato", "chamber"];
+const AT_FIRST = isServed ? [] : ["vibrato", "chamber"];
+
+/** @param {Player} player that begins as somebody has chosen here, or so */
+export function beginSound(player) {
+  const chosen = [settings.sound, settings.room];
+  const isKnown = (/** @type {string} */ name) => Object.hasOwn(facts.presets.shipped, name);
+  AT_FIRST.forEach((first, i) => player.applyPreset(isKnown(chosen[i]) ? chosen[i] : first));
+  if (!isServed) player.write(ARTICULATION, settings.articulation);
+}
+
 /** Of the room, and of where in it the player is. */
 const ROOM = [
   ...["level", "size", "decay", "damping", "distance", "pan"].map((name) => `/room/${name}`),
@@ -43,12 +54,12 @@ export function showSounds({ instrument: { player }, tuned, yehu, taught }) {
   const room = section(
     "room.name",
     note(words("room.about")),
-    ...(rooms.length ? [cards(player, rooms, words("room.name"))] : []),
+    ...(rooms.length ? [cards(player, rooms, "room", words("room.name"))] : []),
     makeSliders(player, ROOM),
   );
   room.id = "room";
   find("panel-sound", HTMLElement).append(
-    section("sound.presets", cards(player, sounds, words("sound.presets"))),
+    section("sound.presets", cards(player, sounds, "sound", words("sound.presets"))),
     room,
     chooser("tuning", Object.keys(facts.tunings), "equal", aboutTuning, (name) => {
       player.applyTuning(name);
@@ -66,13 +77,15 @@ export function showSounds({ instrument: { player }, tuned, yehu, taught }) {
  * are others, the one that most are of is called changed.
  * @param {Player} player
  * @param {{name: string, about: string, values: Readonly<Record<string, number>>}[]} presets
+ * @param {"sound" | "room"} kind
  * @param {() => string} label of all of them, for screen readers
  */
-function cards(player, presets, label) {
+function cards(player, presets, kind, label) {
   const all = presets.map(({ name, about, values }) => {
     const title = make("span");
     const card = makeButton("", () => {
       player.applyPreset(name);
+      remember({ [kind]: name });
       follow();
     });
     card.append(title, make("small", {}, [() => translateOr(`preset.${name}.about`, about)]));

@@ -32,6 +32,7 @@ class Carried:
 
     # Values of parameters by address: of each preset, and those that each mapping starts with.
     presets: dict[str, dict[str, float]]
+    rooms: frozenset[str]  # the presets of rooms
     mappings: dict[str, Array]  # runs of words of ``midi.tables``
     starts: dict[str, dict[str, float]]
     switches: dict[str, int]  # of each mapping: the first key that chooses an articulation; or -1
@@ -50,6 +51,7 @@ def carried() -> Carried:
     presets = [preset for _, preset in sorted(Presets(user_first=False).programs().items())]
     return Carried(
         {NO_PRESET: {}} | {preset.name: dict(preset.values) for preset in presets},
+        frozenset(preset.name for preset in presets if preset.is_room),
         {name: _runs(PlayingOptions(mapping=mapping)) for name, mapping in loaded.items()},
         {
             name: {address: find(address).clamped(value) for address, value in mapping.start}

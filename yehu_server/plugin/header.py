@@ -101,6 +101,7 @@ static const Expression expressions[] = {{
 enum {{ EXPRESSIONS = {expression_count} }};
 
 {values}
+static const bool is_room[] = {{{rooms}}}; /* of each preset */
 
 {tables}
 
@@ -141,6 +142,7 @@ def header(shown: Sequence[HostParameter], data: Carried) -> str:
             "\n".join(_values(name, sets, place))
             for name, sets in (("presets", data.presets), ("starts", data.starts))
         ),
+        rooms=", ".join(str(name in data.rooms).lower() for name in data.presets),
         tables="\n\n".join(
             "\n".join(_runs(name, sets))
             for name, sets in (("mappings", data.mappings), ("tunings", data.tunings))

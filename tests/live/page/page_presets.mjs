@@ -1,6 +1,6 @@
 /** Looks at which sound the page says it has, beside what its parameters are. */
 
-import { open } from "./browser.mjs";
+import { READY, SIZES, drawn, open } from "./browser.mjs";
 
 /** The presets that are shown as chosen, or as changed. @param {import("playwright-core").Page} page */
 async function chosen(page) {
@@ -72,5 +72,21 @@ export default async function (browser, url) {
       (address) => Math.abs(globalThis.imitation.target(address) - values[address]) > 1e-4,
     );
   });
+
+  if (await page.isHidden("#panel-sound")) await page.click("#tab-sound");
+  for (const name of ["Sul tasto", "Hall"])
+    await page.locator(".cards > button", { hasText: name }).first().click();
+  await page.selectOption(".articulation > select", "3");
+  await page.reload();
+  await page.waitForSelector(READY);
+  found.again = await chosen(page);
+  await page.setViewportSize(SIZES.phone);
+  await drawn(page);
+  found.phone = await page.evaluate(() => [
+    [...document.querySelectorAll(".ways output")].filter((one) => one.checkVisibility()).length,
+    [...document.querySelectorAll(".ways .slider > span")].filter(
+      ({ scrollWidth, clientWidth }) => scrollWidth > clientWidth,
+    ).length,
+  ]);
   return { ...found, errors: [...errors, ...heard.errors] };
 }

@@ -24,6 +24,15 @@ def test_a_reset_of_all_is_shown_and_can_be_undone(found) -> None:
     assert found["undone"] == ["Reset all", "Vibrato, changed", "Chamber", "0"]
 
 
+def test_the_sound_room_and_articulation_that_were_chosen_are_there_again(found) -> None:
+    assert found["again"] == ["Sul tasto", "Hall", "3"]
+
+
+def test_on_a_phone_loudness_and_vibrato_have_names_and_values(found) -> None:
+    shown, cut_off = found["phone"]
+    assert (shown, cut_off) == (2, 0)
+
+
 def test_a_search_finds_names_first_and_escape_ends_it(found) -> None:
     first = [address for address in found["sought"] if address.startswith("/playing")]
     is_named = ["string" in address for address in first]

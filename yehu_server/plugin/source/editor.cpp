@@ -88,6 +88,17 @@ void Editor::choose(int chooser, int choice) {
     if (choice != (int)instrument.value(CHOSEN[chooser])) host.edit(host.owner, CHOSEN[chooser], choice);
 }
 
+/* From which the arrows step: of presets the one that was chosen, also where it was changed. */
+int Editor::choice_of(int chooser) const {
+    return CHOSEN[chooser] == PRESET ? instrument.all().preset() : (int)instrument.value(CHOSEN[chooser]);
+}
+
+/* Hosts have a name for each preset; here the sound and the room are named. */
+void Editor::write(int parameter, char *into, size_t size) const {
+    if (parameter == PRESET) instrument.all().describe(into, size);
+    else instrument.all().write(parameter, instrument.value(parameter), into, size);
+}
+
 int Editor::slider_at(float x, float y) const {
     const float column = (x - SLIDERS_X) / SLIDER_STEP, row = (y - SLIDERS_Y) / SLIDER_HEIGHT;
     const bool is_inside = column >= 0 && column < IN_A_ROW && row >= 0 && row < SLIDERS / IN_A_ROW;
@@ -114,12 +125,14 @@ void Editor::press(int px, int py) {
     const bool is_double = slider >= 0 && slider == pressed && ticks - pressed_at < DOUBLE_TICKS;
     end_typing(!is_double);
     held = -1, pressed = is_double ? -1 : slider, pressed_at = ticks;
-    if (is_double) set(slider, parameters[SLID[slider]].usual);
+    if (is_double) set(slider, instrument.all().usual(SLID[slider]));
     else if (slider >= 0 && fmodf(y - SLIDERS_Y, SLIDER_HEIGHT) < WORDS_HEIGHT) focus_on(CHOOSERS + slider), begin_typing();
     else if (slider >= 0) held = slider, drag(px, py);
     else if (chooser >= 0) {
-        const bool is_back = x - CHOOSERS_X - CHOOSER_STEP * (float)chooser < CHOOSER_WIDTH / 2;
-        turn(px, py, is_back ? -1 : 1);
+        const float from = x - CHOOSERS_X - CHOOSER_STEP * (float)chooser;
+        const bool is_name = from > ARROW && from < CHOOSER_WIDTH - ARROW;
+        const bool restores = CHOSEN[chooser] == PRESET && is_name && instrument.all().is_changed();
+        turn(px, py, restores ? 0 : from < CHOOSER_WIDTH / 2 ? -1 : 1);
     } else if (y < 2 * ZOOM_Y && x > ZOOM_X - 12) zoom(wide >= 2 * WIDTH ? -1000 : 1);
 }
 
@@ -128,7 +141,7 @@ void Editor::turn(int px, int py, int steps) {
     const int chooser = chooser_at((float)px / scale, (float)py / scale);
     const int slider = slider_at((float)px / scale, (float)py / scale);
     if (slider >= 0) slide(slider, to_unit(SLID[slider], instrument.value(SLID[slider])) - WHEEL_STEP * steps);
-    if (chooser >= 0) choose(chooser, (int)instrument.value(CHOSEN[chooser]) + steps);
+    if (chooser >= 0) choose(chooser, choice_of(chooser) + steps);
 }
 
 void Editor::key(Key key) {
@@ -148,7 +161,7 @@ void Editor::key(Key key) {
         const bool is_less = key == Key::LEFT || key == Key::DOWN;
         return slide(slider, key == Key::FIRST ? 0.0 : key == Key::LAST ? 1.0 : unit + (is_less ? -WHEEL_STEP : WHEEL_STEP));
     }
-    const int now = (int)instrument.value(CHOSEN[focus]);
+    const int now = choice_of(focus);
     switch (key) {
     case Key::LEFT: case Key::UP: return choose(focus, now - 1);
     case Key::RIGHT: case Key::DOWN: return choose(focus, now + 1);
@@ -169,7 +182,7 @@ void Editor::type(char letter) {
     } else if (letter == '+' || letter == '=' || letter == '-') zoom(letter == '-' ? -1 : 1);
     else if (!is_slider) {
         const Parameter &p = parameters[CHOSEN[focus]];
-        const int now = (int)instrument.value(CHOSEN[focus]), count = p.steps + 1;
+        const int now = choice_of(focus), count = p.steps + 1;
         for (int i = 1; i < count; i++)
             if (*p.choices[(now + i) % count] == letter) return choose(focus, (now + i) % count);
     }
@@ -193,7 +206,7 @@ void Editor::focus_on(int control) { focus = control, is_stale = true; }
 void Editor::name() {
     const int parameter = focus < CHOOSERS ? CHOSEN[focus] : SLID[focus - CHOOSERS];
     char text[160], value[64];
-    instrument.all().write(parameter, instrument.value(parameter), value, sizeof value);
+    write(parameter, value, sizeof value);
     snprintf(text, sizeof text, "%s: %s", parameters[parameter].name, length >= 0 ? typed : value);
     window.name(text);
 }
@@ -366,7 +379,8 @@ void Editor::draw_chooser(int chooser) {
     const Parameter &p = parameters[CHOSEN[chooser]];
     const float x = CHOOSERS_X + CHOOSER_STEP * (float)chooser, y = CHOOSERS_Y, room = CHOOSER_WIDTH - 2 * ARROW;
     char name[64];
-    instrument.all().write(CHOSEN[chooser], chosen[chooser], name, sizeof name);
+    write(CHOSEN[chooser], name, sizeof name);
+    const int choice = choice_of(chooser);
     canvas.text(x + 2, y - 8, 12, p.name, SOFT);
     canvas.box(x, y, CHOOSER_WIDTH, CHOOSER_HEIGHT, 8, chooser == focus ? OUTER : LINE);
     canvas.box(x + 1.5f, y + 1.5f, CHOOSER_WIDTH - 3, CHOOSER_HEIGHT - 3, 7, SURFACE);
@@ -374,8 +388,8 @@ void Editor::draw_chooser(int chooser) {
     const float long_at_1 = canvas.text(0, 0, 1, name, INK, false);
     if (size * long_at_1 > room) size = room / long_at_1;
     canvas.text(x + (CHOOSER_WIDTH - size * long_at_1) / 2, y + 26, size, name, INK);
-    canvas.text(x + 10, y + 26, 16, "<", chosen[chooser] > 0 ? INK : LINE);
-    canvas.text(x + CHOOSER_WIDTH - 15, y + 26, 16, ">", chosen[chooser] < p.steps ? INK : LINE);
+    canvas.text(x + 10, y + 26, 16, "<", choice > 0 ? INK : LINE);
+    canvas.text(x + CHOOSER_WIDTH - 15, y + 26, 16, ">", choice < p.steps ? INK : LINE);
 }
 
 } /* namespace yehu */

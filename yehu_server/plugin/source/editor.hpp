@@ -60,6 +60,8 @@ private:
     void slide(int slider, double unit);
     void set(int slider, double value);
     void choose(int chooser, int choice);
+    int choice_of(int chooser) const;
+    void write(int parameter, char *into, size_t size) const;
     void focus_on(int control);
     void begin_typing();
     void end_typing(bool counts);

@@ -34,6 +34,34 @@ Settings::Settings() {
     changed = 0;
 }
 
+double Settings::usual(int parameter) const {
+    for (int room = 0; room < 2; room++) {
+        const Values &own = presets[nearest(room == 1)];
+        for (int i = 0; i < own.count; i++)
+            if (own.values[i].parameter == parameter) return own.values[i].value;
+    }
+    return parameters[parameter].usual;
+}
+
+int Settings::nearest(bool room) const {
+    int best = preset(), least = PARAMETERS;
+    if (best != NO_PRESET && is_room[best] == room) return best;
+    for (int i = 1; i <= parameters[PRESET].steps; i++) {
+        const int off = count_changed(i);
+        if (is_room[i] == room && off < least) best = i, least = off;
+    }
+    return best;
+}
+
+int Settings::count_changed(int preset) const {
+    int count = 0;
+    for (int i = 0; i < presets[preset].count; i++) {
+        const Value &wanted = presets[preset].values[i];
+        count += !is_same(wanted.parameter, value(wanted.parameter), wanted.value);
+    }
+    return count;
+}
+
 void Settings::copy(const Settings &other) {
     for (int i = 0; i < PARAMETERS; i++) values[i] = other.value(i);
     changed = other.changed.load();

@@ -25,6 +25,11 @@ class Settings {
 public:
     Settings();
     double value(int parameter) const { return values[parameter].load(std::memory_order_relaxed); }
+    /* The preset that was chosen last, also where values of it are others now; or NO_PRESET. */
+    int preset() const { return changed ? changed.load() : (int)value(PRESET); }
+    bool is_changed() const { return changed > 0; }
+    /* The value of a parameter in the sound or room that `describe` names, or else its own usual one. */
+    double usual(int parameter) const;
     void copy(const Settings &other);
     void store(int parameter, double value);
     /* Store a value, and those that come with it; `each` of them, by parameter and whether it is another
@@ -34,12 +39,17 @@ public:
     /* A value as text, and a text's value; whatever the locale is. The preset none has the name of the
      * one that was changed. */
     void write(int parameter, double value, char *into, size_t size) const;
+    /* The sound and the room, as "vibrato, changed, hall": of the preset that was chosen last, and the nearest. */
+    void describe(char *into, size_t size) const;
     static bool read(int parameter, const char *text, double *value);
     /* State as text; `save` returns its length, which may be more than `size`. */
     size_t save(char *into, size_t size) const;
     bool load(const char *text, size_t size);
 
 private:
+    int count_changed(int preset) const;
+    int nearest(bool room) const;
+
     std::atomic<double> values[PARAMETERS];
     std::atomic<int> changed; /* the preset that was changed, or 0 */
 };
@@ -67,12 +77,8 @@ template <class Each> void Settings::change(int parameter, double value, Each ea
             move(old.values[i].parameter, parameters[old.values[i].parameter].usual);
         for (int i = 0; i < now.count; i++) move(now.values[i].parameter, now.values[i].value);
     }
-    const int preset = changed ? changed.load() : (int)this->value(PRESET);
-    bool is_whole = true;
-    for (int i = 0; i < presets[preset].count; i++) {
-        const Value &wanted = presets[preset].values[i];
-        is_whole = is_whole && is_same(wanted.parameter, this->value(wanted.parameter), wanted.value);
-    }
+    const int preset = this->preset();
+    const bool is_whole = count_changed(preset) == 0;
     if (is_whole != (changed > 0)) return;
     changed = is_whole ? 0 : preset;
     move(PRESET, is_whole ? preset : NO_PRESET);

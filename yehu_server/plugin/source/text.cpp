@@ -82,6 +82,13 @@ void Settings::write(int parameter, double value, char *into, size_t size) const
     if (*unit) snprintf(into + length, size - length, " %s", unit);
 }
 
+void Settings::describe(char *into, size_t size) const {
+    const int sound = nearest(false), room = nearest(true);
+    const auto mark = [&](int preset) { return count_changed(preset) ? CHANGED : ""; };
+    const char *const *names = parameters[PRESET].choices;
+    snprintf(into, size, "%s%s, %s%s", names[sound], mark(sound), names[room], mark(room));
+}
+
 bool Settings::read(int parameter, const char *text, double *value) {
     const Parameter &p = parameters[parameter];
     if (parameter == PRESET && changed_in(text) > 0) return *value = NO_PRESET, true;

@@ -56,14 +56,19 @@ bool read_state(Vst3 &plugin, v3_bstream **stream) {
     const bool is_right = plugin.instrument.load(text, (size_t)length);
     free(text);
     plugin.shown.copy(plugin.instrument.all());
+    for (auto &each : plugin.awaited) each = false;
     return is_right;
 }
 
+/* What the host has set and not processed yet is state, too. */
 bool write_state(const Vst3 &plugin, v3_bstream **stream) {
-    const size_t size = plugin.instrument.save(nullptr, 0) + 1;
+    bool is_late = false;
+    for (const auto &each : plugin.awaited) is_late |= each;
+    const Settings &settings = is_late ? plugin.shown : plugin.instrument.all();
+    const size_t size = settings.save(nullptr, 0) + 1;
     char *text = (char *)malloc(size);
     if (!text) return false;
-    plugin.instrument.save(text, size);
+    settings.save(text, size);
     int32_t done = 0, more = 0;
     const int32_t length = (int32_t)strlen(text);
     for (; done < length; done += more)

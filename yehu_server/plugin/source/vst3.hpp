@@ -25,6 +25,7 @@ struct Vst3 {
     double rate;
     Settings shown; /* what the host set the controller to */
     bool unread[PARAMETERS]; /* whether it was changed since by something else */
+    std::atomic<bool> awaited[PARAMETERS]; /* whether the processor has not got it yet */
     v3_component_handler **handler; /* of the host; or null */
     Instrument instrument;
 };

@@ -118,7 +118,9 @@ v3_result V3_API set(void *self, v3_param_id number, double unit) {
     const double value = from_unit(parameter, unit);
     plugin.unread[parameter] = false;
     /* It may be what the processor reported. */
-    if (is_same(parameter, value, plugin.instrument.value(parameter))) plugin.instrument.know(parameter, value);
+    const bool is_processed = is_same(parameter, value, plugin.instrument.value(parameter));
+    if (is_processed) plugin.instrument.know(parameter, value);
+    plugin.awaited[parameter] = !is_processed;
     show(plugin, parameter, value);
     return V3_OK;
 }

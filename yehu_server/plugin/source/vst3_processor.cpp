@@ -101,7 +101,8 @@ void take_midi(Instrument &instrument, uint32_t at, uint32_t number, double unit
     }
 }
 
-void take_parameters(Instrument &instrument, v3_param_changes **changes) {
+void take_parameters(Vst3 &plugin, v3_param_changes **changes) {
+    Instrument &instrument = plugin.instrument;
     const v3_param_changes *list = v3_cpp_obj(changes);
     for (int32_t i = 0, count = list->get_param_count(changes); i < count; i++) {
         v3_param_value_queue **queue = list->get_param_data(changes, i);
@@ -109,6 +110,7 @@ void take_parameters(Instrument &instrument, v3_param_changes **changes) {
         const v3_param_value_queue *points = v3_cpp_obj(queue);
         const uint32_t number = points->get_param_id(queue);
         const int parameter = parameter_of(number);
+        if (parameter >= 0) plugin.awaited[parameter] = false;
         for (int32_t n = 0, last = points->get_point_count(queue); n < last; n++) {
             int32_t at;
             double unit;
@@ -164,7 +166,7 @@ v3_result V3_API process(void *self, v3_process_data *data) {
     if (data->ctx && data->nframes > 0)
         instrument.transport(data->ctx->state & V3_PROCESS_CTX_PLAYING && data->ctx->project_time_in_samples >= 0);
     instrument.begin_block();
-    if (data->input_params) take_parameters(instrument, data->input_params);
+    if (data->input_params) take_parameters(of<PROCESSOR>(self), data->input_params);
     if (data->input_events) take_events(instrument, data->input_events);
     if (data->nframes > 0 && data->num_output_buses > 0 && data->outputs[0].num_channels >= 2) {
         float **out = data->outputs[0].channel_buffers_32;

@@ -1,11 +1,11 @@
 /** Plays a tune's MIDI messages in time; or follows somebody who plays its notes, and waits or keeps time. */
 
 /** @typedef {import('./instrument.js').Instrument} Instrument */
+/** @typedef {import('./hands/fingering.js').Note} Note */
 
 import facts from "./facts.js";
-import { fingered, habitsOf } from "./hands/fingering.js";
+import { fingered, habitsOf, notesOf } from "./hands/fingering.js";
 import { MAPPINGS } from "./playing/learned.js";
-import { transposed } from "./playing/table.js";
 
 /**
  * @typedef {object} Tune As `examples.js` has it.
@@ -15,23 +15,13 @@ import { transposed } from "./playing/table.js";
  * @property {number} seconds
  * @property {number} tonic the note that is do
  * @property {[number, number[]][]} events seconds, and the bytes of a message
- *
- * @typedef {object} Note
- * @property {number} at s
- * @property {number} until s
- * @property {number} pitch
- * @property {boolean} isTied in one bow with the next
  */
 
 const PORT = 15; // away from the keyboards' ports
 const EVERY = 60; // ms
-const NOTE_ON = 0x90;
-const NOTE_OFF = 0x80;
-const PERCUSSION = 9;
 const RIGHT_WITHIN = 0.5; // semitones
 const IN_TIME = 0.4; // s before or after its time
 const COUNT_IN = 2; // s before the first note
-const OVERLAP = 0.001; // s; notes that overlap by more are in one bow
 
 /** A tune that is on. Events: 'move' as it goes on, and 'end'. */
 class Course extends EventTarget {
@@ -277,35 +267,4 @@ export class TuneGuide extends Course {
       hardest: hardest > 0 ? [this.notes[hardest - 1], this.notes[hardest]] : null,
     };
   }
-}
-
-/**
- * A tune's notes, in order, within the instrument's range.
- * @param {Tune} tune
- * @returns {Note[]}
- */
-export function notesOf(tune) {
-  /** @type {Note[]} */
-  const notes = [];
-  /** @type {Map<string, Note>} */
-  const open = new Map();
-  for (const [at, [status, key, velocity]] of tune.events) {
-    const kind = status & 0xf0;
-    const channel = status & 0x0f;
-    if (channel === PERCUSSION || (kind !== NOTE_ON && kind !== NOTE_OFF)) continue;
-    const name = `${channel} ${key}`;
-    const held = open.get(name);
-    if (held) held.until = at;
-    open.delete(name);
-    if (kind !== NOTE_ON || velocity === 0) continue;
-    const note = { at, until: tune.seconds, pitch: transposed(key), isTied: false };
-    open.set(name, note);
-    notes.push(note);
-  }
-  notes.forEach((note, i) => {
-    const next = notes[i + 1];
-    note.isTied = next !== undefined && note.until > next.at + OVERLAP && next.pitch !== note.pitch;
-    if (next) note.until = Math.min(note.until, next.at);
-  });
-  return notes;
 }

@@ -1,15 +1,26 @@
-/** Which string and finger the player takes for notes to come: the rules of the server's `fingering.choose`. */
+/** The notes of a tune; and which string and finger the player takes for them, as the server's `fingering.choose`. */
 
 /** @typedef {import('../interfaces.js').Player} Player */
-/** @typedef {import('../tune.js').Note} Note */
+/** @typedef {import('../tune.js').Tune} Tune */
 
 import facts from "../facts.js";
+import { transposed } from "../playing/table.js";
 import { OPEN, fingerOf } from "./scale.js";
 
 const { OPEN_WITHIN, HIGHEST, SLOW_FROM_S, LEAST_PRESS } = facts.notes;
 const ON_OPEN = -1; // place of a finger that is up
+const NOTE_ON = 0x90;
+const NOTE_OFF = 0x80;
+const PERCUSSION = 9;
+const OVERLAP = 0.001; // s; notes that overlap by more are in one bow
 
 /**
+ * @typedef {object} Note
+ * @property {number} at s
+ * @property {number} until s
+ * @property {number} pitch
+ * @property {boolean} isTied in one bow with the next
+ *
  * @typedef {object} Fingered
  * @property {0 | 1} string
  * @property {number} finger 0: the string is open
@@ -59,4 +70,35 @@ function choose(pitch, asked, shakes, string, place) {
   const isFar = asked === 1 || string !== 0 || place === ON_OPEN || pitch > HIGHEST[0];
   const isNearer = !isFar && Math.abs(on(0) - place) < Math.abs(on(1) - place);
   return isNearer ? [0, on(0)] : [1, on(1)];
+}
+
+/**
+ * A tune's notes, in order, within the instrument's range.
+ * @param {Tune} tune
+ * @returns {Note[]}
+ */
+export function notesOf(tune) {
+  /** @type {Note[]} */
+  const notes = [];
+  /** @type {Map<string, Note>} */
+  const open = new Map();
+  for (const [at, [status, key, velocity]] of tune.events) {
+    const kind = status & 0xf0;
+    const channel = status & 0x0f;
+    if (channel === PERCUSSION || (kind !== NOTE_ON && kind !== NOTE_OFF)) continue;
+    const name = `${channel} ${key}`;
+    const held = open.get(name);
+    if (held) held.until = at;
+    open.delete(name);
+    if (kind !== NOTE_ON || velocity === 0) continue;
+    const note = { at, until: tune.seconds, pitch: transposed(key), isTied: false };
+    open.set(name, note);
+    notes.push(note);
+  }
+  notes.forEach((note, i) => {
+    const next = notes[i + 1];
+    note.isTied = next !== undefined && note.until > next.at + OVERLAP && next.pitch !== note.pitch;
+    if (next) note.until = Math.min(note.until, next.at);
+  });
+  return notes;
 }

@@ -1,7 +1,7 @@
 /** The notes of a tune, as they come: jianpu, how long they are, fingers, and what is in one bow. */
 
 /** @typedef {import("../tune.js").TunePlayer | import("../tune.js").TuneGuide} Course */
-/** @typedef {import("../tune.js").Note} Note */
+/** @typedef {import("../hands/fingering.js").Note} Note */
 /** @typedef {import("./picture.js").Moment} Moment */
 
 import { jianpu } from "../hands/scale.js";

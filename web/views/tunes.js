@@ -77,7 +77,7 @@ export class Lesson extends EventTarget {
   tune = null;
   /** @type {Way} */
   way = "listen";
-  /** The note that is asked for. @type {import('../tune.js').Note | undefined} */
+  /** The note that is asked for. @type {import('../hands/fingering.js').Note | undefined} */
   asked = undefined;
   /** The easiest tune. @type {Tune | null} */
   first = null;

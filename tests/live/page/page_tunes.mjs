@@ -62,7 +62,7 @@ export default async function (browser, url) {
   const press = (/** @type {number} */ pitch) => page.keyboard.press(`Key${KEYS[pitch - FIRST]}`);
   const notes = await page.evaluate(async () => {
     const { default: examples } = await import("/examples.js");
-    const { notesOf } = await import("/tune.js");
+    const { notesOf } = await import("/hands/fingering.js");
     return notesOf(examples.twinkle).map(({ pitch }) => pitch);
   });
   await press(notes[0] + 2); // wrong

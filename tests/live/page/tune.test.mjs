@@ -12,7 +12,8 @@ performance.now = () => clock;
 
 const { default: facts } = await load("facts.js");
 const { default: examples } = await load("examples.js");
-const { TuneGuide, notesOf } = await load("tune.js");
+const { TuneGuide } = await load("tune.js");
+const { notesOf } = await load("hands/fingering.js");
 const { Challenge } = await load("challenge.js");
 const { jianpuText, setTonic } = await load("hands/scale.js");
 const { BEGIN, SLIDE, DRAW } = facts.kinds;

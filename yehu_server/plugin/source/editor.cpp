@@ -380,14 +380,19 @@ void Editor::draw_chooser(int chooser) {
     const float x = CHOOSERS_X + CHOOSER_STEP * (float)chooser, y = CHOOSERS_Y, room = CHOOSER_WIDTH - 2 * ARROW;
     char name[64];
     write(CHOSEN[chooser], name, sizeof name);
+    if (CHOSEN[chooser] == PRESET) instrument.all().describe(name, sizeof name, "\n"); /* in two lines */
     const int choice = choice_of(chooser);
     canvas.text(x + 2, y - 8, 12, p.name, SOFT);
     canvas.box(x, y, CHOOSER_WIDTH, CHOOSER_HEIGHT, 8, chooser == focus ? OUTER : LINE);
     canvas.box(x + 1.5f, y + 1.5f, CHOOSER_WIDTH - 3, CHOOSER_HEIGHT - 3, 7, SURFACE);
-    float size = 16;
-    const float long_at_1 = canvas.text(0, 0, 1, name, INK, false);
-    if (size * long_at_1 > room) size = room / long_at_1;
-    canvas.text(x + (CHOOSER_WIDTH - size * long_at_1) / 2, y + 26, size, name, INK);
+    const auto centre = [&](const char *line, float at, float size) {
+        const float long_at_1 = canvas.text(0, 0, 1, line, INK, false);
+        size = fminf(size, room / long_at_1);
+        canvas.text(x + (CHOOSER_WIDTH - size * long_at_1) / 2, y + at, size, line, INK);
+    };
+    char *second = strchr(name, '\n');
+    if (second) *second++ = 0, centre(second, 34, 12);
+    centre(name, second ? 18 : 26, second ? 14 : 16);
     canvas.text(x + 10, y + 26, 16, "<", choice > 0 ? INK : LINE);
     canvas.text(x + CHOOSER_WIDTH - 15, y + 26, 16, ">", choice < p.steps ? INK : LINE);
 }

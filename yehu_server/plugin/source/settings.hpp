@@ -40,7 +40,7 @@ public:
      * one that was changed. */
     void write(int parameter, double value, char *into, size_t size) const;
     /* The sound and the room, as "vibrato, changed, hall": of the preset that was chosen last, and the nearest. */
-    void describe(char *into, size_t size) const;
+    void describe(char *into, size_t size, const char *between = ", ") const;
     static bool read(int parameter, const char *text, double *value);
     /* State as text; `save` returns its length, which may be more than `size`. */
     size_t save(char *into, size_t size) const;

@@ -82,11 +82,11 @@ void Settings::write(int parameter, double value, char *into, size_t size) const
     if (*unit) snprintf(into + length, size - length, " %s", unit);
 }
 
-void Settings::describe(char *into, size_t size) const {
+void Settings::describe(char *into, size_t size, const char *between) const {
     const int sound = nearest(false), room = nearest(true);
     const auto mark = [&](int preset) { return count_changed(preset) ? CHANGED : ""; };
     const char *const *names = parameters[PRESET].choices;
-    snprintf(into, size, "%s%s, %s%s", names[sound], mark(sound), names[room], mark(room));
+    snprintf(into, size, "%s%s%s%s%s", names[sound], mark(sound), between, names[room], mark(room));
 }
 
 bool Settings::read(int parameter, const char *text, double *value) {

@@ -16,11 +16,16 @@ import numpy as np
 from yehu_lab.body.curve import Complexes, Curve, Floats
 from yehu_lab.body.measurement import Measurement
 from yehu_lab.body.modes import Modes
-from yehu_server.core.physics.default_quantities import Body, measured_body, read_body
+from yehu_server.core.physics.default_quantities import (
+    Body,
+    Quantities,
+    read_body,
+    read_quantities,
+)
 from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError, OutputError
 from yehu_server.util import __version__
-from yehu_server.util.documents import Document
+from yehu_server.util.documents import Document, looks_like
 from yehu_server.util.files import check_free, check_target, write_bytes
 
 FORMAT = "yehu-server body"  # in the files that `save` writes
@@ -185,11 +190,15 @@ def read_fit(path: Path) -> Fit:
     what was measured.
     """
     if path.suffix.lower() == ".toml":
-        named = _document(path).toml().data.get("body")
+        data = _document(path).toml().data
+        kind = looks_like(data)
+        if ("base" not in data or kind) and data.keys().isdisjoint(vars(Quantities())):
+            raise MeasurementError(f"{path}: is not an instrument or body file{kind}")
+        named = data.get("body")
         if named is None:
-            return bare_fit(measured_body())
+            return bare_fit(read_quantities(path).body)
         path = path.parent / str(named)
-    data: Any = _document(path).json().data
+    data = _document(path).json().data
     fitted = bare_fit(read_body(path))
     if "measured" not in data or "fit" not in data:
         return fitted

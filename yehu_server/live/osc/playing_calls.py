@@ -1,5 +1,6 @@
 """The OSC calls that play a part: parameters, notes, values and subscriptions."""
 
+import math
 from collections.abc import Sequence
 from functools import partial
 
@@ -12,8 +13,8 @@ from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of
-from yehu_server.params.spec import Param
-from yehu_server.params.table import PREFIX, TABLE, UNIT
+from yehu_server.params.spec import TURNED_ON, Param
+from yehu_server.params.table import NAMES, PREFIX, TABLE, UNIT, find, named, there_is
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.part_state import within_midi
 from yehu_server.playing.player import Player
@@ -46,7 +47,13 @@ class PartCalls(GroupCalls):
 
     def set(self, call: Request, address: str) -> None:
         """Set a parameter."""
-        (value,) = call.numbers(1)
+        param = find(address)
+        if len(call.arguments) == 1 and isinstance(call.arguments[0], str) and address in NAMES:
+            value = named(param, call.arguments[0])
+        else:
+            (value,) = call.numbers(1)
+        if param.is_choice:  # to what plays: faders of surfaces pass through fractions
+            value = there_is(param, float(math.floor(value + TURNED_ON)))
         self._set(call, address, value)
         self._echo(call.peer, [address])
 

@@ -115,6 +115,16 @@ def test_what_exists_is_replaced_only_where_that_is_asked_for(refused, tmp_path,
     assert older.read_text() == "older"
 
 
+def test_a_file_is_refused_as_a_folder_before_any_work(refused, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    for words in (
+        *(("build", what) for what in ("wasm", "library", "plugin")),
+        *(("page",), ("surfaces",), ("dataset", "d.toml"), ("body", "taps")),
+    ):
+        for path in ("file", "file/below"):
+            assert "file: is a file; name a folder" in refused(*words, "-o", path), words
+
+
 def test_every_command_that_writes_a_file_can_be_told_to_replace_it():
     waiting, writing = [_parser()], []
     while waiting:

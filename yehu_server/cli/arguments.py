@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
-from yehu_server.cli.converters import target
+from yehu_server.cli.converters import folder, target
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import did_you_mean, one_line
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
@@ -272,7 +272,7 @@ def add_folder(
 ) -> None:
     """Add -o, for a folder to write to."""
     add_options(
-        parser, f"-o --output FOLDER: {text}", output={"required": required, "type": target}
+        parser, f"-o --output FOLDER: {text}", output={"required": required, "type": folder}
     )
 
 

@@ -243,5 +243,5 @@ class Fields:
             if name not in self._known and name not in others:
                 known = (*self._known, *others)
                 hint = did_you_mean(name, known)
-                kind = "" if self.key else looks_like(self.data)
+                kind = "" if self.place or self.key else looks_like(self.data)
                 self.add_error(name, f"unknown entry{hint}{kind} (known: {', '.join(known)})")

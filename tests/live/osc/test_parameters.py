@@ -169,3 +169,16 @@ def test_a_held_parameter_refuses_other_values_and_says_where_it_stays(still):
     assert "error" not in str(still.ask("/playing/pressure", 0.5))
     (error,) = still.ask("/playing/pressure", 99.0)
     assert error.arguments[1] == "is held at 0.5 by --set; /yehu/release frees it"
+
+
+def test_an_unknown_address_that_is_asked_for_is_named_with_a_near_one(still):
+    (refused,) = still.ask("/get", "/yehu/playing/vibratto")
+    assert "/yehu/playing/vibratto" in refused.arguments[1]
+    assert "did you mean /yehu/playing/vibrato" in refused.arguments[1]
+
+
+def test_true_and_false_are_no_notes(still):
+    for words in ((True, 90.0), (67.0, True)):
+        (refused,) = still.ask("/note", *words)
+        assert "got T or F" in refused.arguments[1]
+        still.clock.now += clients.FORGIVEN_S

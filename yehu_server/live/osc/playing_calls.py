@@ -95,6 +95,8 @@ class PartCalls(GroupCalls):
 
     @plays("/note", "Begins a note; velocity 0 ends it.", NOTE, VELOCITY)
     def _note(self, call: Request) -> None:
+        if any(isinstance(each, bool) for each in call.arguments):
+            raise RefusedError("expected a note and a velocity, got T or F")
         note, velocity = call.numbers(2)
         if velocity == 0.0:
             self._player.key_off(note, frame=call.frame)

@@ -6,7 +6,7 @@ find NAME.practice.json by themselves beside an instrument file NAME.toml.
   yehu-server practise -o mine.json
   yehu-server practise --instrument heavy_bridge.toml -o heavy_bridge.practice.json
   yehu-server practise --preset sul-ponticello -o near.json
-  yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
+  yehu-server practise --tuning chaozhou-seven-equal --keyboard-map chaozhou-keys -o chaozhou.json
   yehu-server render tune.mid -o tune.wav --practice mine.json
 
 It takes a quarter of an hour or more on two cores. It begins with the table beside the instrument

@@ -61,7 +61,8 @@ def within(text: str, lo: float, hi: float, unit: str) -> float:
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
     if not lo <= value <= hi:  # also refuses NaN
-        raise argparse.ArgumentTypeError(f"{text} is not within {lo:g} to {hi:g} {unit}")
+        what = f"{lo:g} to {hi:g} {unit}".rstrip()
+        raise argparse.ArgumentTypeError(f"{text} is not within {what}")
     return value
 
 

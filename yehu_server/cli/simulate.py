@@ -54,9 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_distinct({"-o": arguments.output}, [arguments.gesture, *own])
     check_new(arguments)
     if arguments.output.suffix.lower() not in ("", ".npz"):
-        raise OutputError(
-            f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"
-        )
+        raise OutputError(f"{arguments.output}: simulate writes arrays; name an .npz file")
     compile_all(arguments, COMPILED if arguments.energy else {})
     with progress_bar(arguments, "simulating") as progress:
         result = simulate(

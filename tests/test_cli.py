@@ -286,7 +286,7 @@ def test_a_wrong_instrument_or_gesture_gets_one_line_and_no_file(
         ("x.toml", "tension = 1", "x.toml:1: tension: unknown entry"),
         ("x.toml", 'body = "none.json"', "none.json"),
         ("x.json", json.dumps(rod), "grid"),
-        ("gesture.json", "MThd", "not a gesture file"),
+        ("gesture.json", "MThd", "not a gesture file (no JSON from line 1, column 1 on)"),
         ("gesture.json", '{"controls": {"bow\\nforce": 1}}', "force"),
         ("gesture.json", json.dumps({"instrument": rod}), "grid"),
         ("gesture.json", '{"duration": 3600}', "GiB"),

@@ -182,3 +182,10 @@ def test_true_and_false_are_no_notes(still):
         (refused,) = still.ask("/note", *words)
         assert "got T or F" in refused.arguments[1]
         still.clock.now += clients.FORGIVEN_S
+
+
+def test_a_fader_as_velocity_is_told_once_of_the_range(still):
+    heard = still.ask("/note", 67.0, 0.8) + still.ask("/note", 67.0, 0.7)
+    assert [m.arguments for m in heard if m.address == "/yehu/moved"] == [
+        ["/yehu/note", "velocity 0.8 is nearly silent: it is 1 to 127"]
+    ]

@@ -102,6 +102,9 @@ class PartCalls(GroupCalls):
             self._player.key_off(note, frame=call.frame)
         else:
             self._player.key_on(note, velocity, frame=call.frame)
+            if 0.0 < velocity < 1.0:  # a fader's
+                what = f"velocity {velocity:g} is nearly silent: it is 1 to 127"
+                self._tell_once(call.peer, f"{self._prefix}/note", what, "velocity")
             tuned, played = self._player.pitches(note)
             if played != tuned:
                 what = "it does not sound" if played is None else f"it sounds as {played:g}"
@@ -111,13 +114,13 @@ class PartCalls(GroupCalls):
         outside = f"{note:g} is outside {range_text(self._player.notes)}; {what}"
         self._tell_once(peer, self._prefix + address, outside)
 
-    def _tell_once(self, peer: Peer, address: str, what: str) -> None:
-        """Send a peer, once for each address, what becomes of a value outside the range."""
+    def _tell_once(self, peer: Peer, address: str, what: str, of: str = "") -> None:
+        """Send a peer, once for each address, what becomes of a value, or one `of` its values."""
         told = self._context.told
-        if (peer, address) not in told:
+        if (peer, address + of) not in told:
             if len(told) >= limits.PEERS:
                 told.clear()
-            told.add((peer, address))
+            told.add((peer, address + of))
             self._clients.send(peer, pack(f"{PREFIX}/moved", address, what))
 
     @plays("/note/off", "Ends a note.", NOTE)

@@ -194,9 +194,10 @@ def test_a_person_reads_what_came_of_it_a_program_one_object_and_who_wants_it_no
     assert str(out / "x") in told
     assert ("\nMIDI channel 1 (1 note)" in told) == (into[0] == "render")
     assert "outside" not in told
-    assert command(*into, out / "x", "--quiet") == (0, "", "")
+    into = (*into, out / "x", "--overwrite")
+    assert command(*into, "--quiet") == (0, "", "")
     for extra in ((), ("--quiet",)):
-        code, told, err = command(*into, out / "x", "--json", *extra)
+        code, told, err = command(*into, "--json", *extra)
         assert (code, err) == (0, "")
         assert told.endswith("}\n")
         assert isinstance(json.loads(told), dict)
@@ -285,7 +286,7 @@ def test_a_wrong_instrument_or_gesture_gets_one_line_and_no_file(
         ("x.toml", "tension = 1", "x.toml:1: tension: unknown entry"),
         ("x.toml", 'body = "none.json"', "none.json"),
         ("x.json", json.dumps(rod), "grid"),
-        ("gesture.json", "MThd", "not a gesture file"),
+        ("gesture.json", "MThd", "not a gesture file (no JSON from line 1, column 1 on)"),
         ("gesture.json", '{"controls": {"bow\\nforce": 1}}', "force"),
         ("gesture.json", json.dumps({"instrument": rod}), "grid"),
         ("gesture.json", '{"duration": 3600}', "GiB"),
@@ -363,6 +364,7 @@ def test_a_full_disk_is_reported_in_one_line_and_an_older_file_stays(tmp_path, o
         first, source = "simulate", tmp_path / "gesture.json"
         source.write_text(json.dumps(EXAMPLE | {"duration": 3.0}))
         (out / name).write_text("older")
+        options = ["--overwrite"]
     else:
         first, source = "render", one_note(tmp_path / "tune.mid", seconds=3.0)
         with sound_file(out / name, 44100, name.partition(".")[2], "16") as older:

@@ -81,6 +81,13 @@ def test_an_error_in_the_file_names_file_and_line(subtests, file, refused):
         ("http = false", ":2: http: expected text or a number, got False"),
         ("watch = 1", ":2: watch: expected true or false, got 1"),
         ("range = 'fold'", ":2: range: invalid choice: 'fold' (choose from"),
+        ("\n[set]\n'/playing/volume' = 'x'", ":3: set: /playing/volume: 'x' is not a number"),
+        ("set = {'/playing/volume' = 1000}", ":2: set: /playing/volume: 1000 is not within"),
+        ("[set]\n'/no/such' = 1", ":2: set: unknown parameter"),
+        ("preset = 'flautand'", ":2: preset: no preset 'flautand'"),
+        ("mapping = 'nope'", ":2: mapping: no mapping 'nope'"),
+        ("osc = 99999", ":2: osc: "),
+        ("[[bind]]", ":2: bind: unknown option; it looks like a mapping"),
         ("\n[set]\n'/playing/volume' = []", ":3: set: expected text or a number"),
     ]:
         with subtests.test(text[:30]):

@@ -1,8 +1,13 @@
 """No command overwrites what it reads, or what the user made."""
 
+import argparse
 from pathlib import Path
 
+import numpy as np
 import pytest
+import soundfile
+
+from yehu_server.cli import _parser
 
 MAPPING = 'base = "keyboard"\n'
 
@@ -79,3 +84,57 @@ def test_a_rendering_or_a_replay_does_not_go_over_what_is_read(refused, files, t
     ):
         assert "-o would overwrite an input" in refused(*words, "--overwrite")
     assert files["w.toml"].read_text() == MAPPING
+
+
+GESTURE = '{"duration": 0.05, "controls": {"bow_force": 0.5, "bow_velocity": 0.2}}'
+MADE_FILES = (  # of all that writes data to a file that is named
+    ("simulate", "g.json", "-o", "x.npz"),
+    ("practise", "-o", "x.json"),
+    ("mappings", "convert", "w.toml", "-o", "x.toml"),
+    ("score", "write", "t.abc", "-o", "x.jianpu"),
+    ("score", "show", "t.abc", "--export-midi", "x.mid"),
+    ("build", "tables", "-o", "x.tables"),
+    ("follow", "hum.wav", "-o", "x.jsonl"),
+    ("body", "fit", "a.csv", "-o", "x.json"),
+    ("body", "fit", "a.csv", "-o", "x.toml"),
+    ("sweep", "g.json", "--vary", "bow_force=1,2", "-o", "x.npz"),
+    ("sweep", "show", "r.npz", "-o", "x.html"),
+)
+
+
+@pytest.mark.parametrize("words", MADE_FILES, ids=" ".join)
+@pytest.mark.usefixtures("files")
+def test_what_exists_is_replaced_only_where_that_is_asked_for(refused, tmp_path, words):
+    (tmp_path / "g.json").write_text(GESTURE)
+    (tmp_path / "t.abc").write_text("X:1\nK:C\nCDEF|\n")
+    soundfile.write(tmp_path / "hum.wav", 0.5 * np.sin(np.arange(30_000) * 0.0628), 44100)
+    older = tmp_path / words[-1]
+    older.write_text("older")
+    assert f"{words[-1]}: exists; " in (err := refused(*words))
+    assert "--overwrite" in err
+    assert older.read_text() == "older"
+
+
+def test_a_file_is_refused_as_a_folder_before_any_work(refused, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    for words in (
+        *(("build", what) for what in ("wasm", "library", "plugin")),
+        *(("page",), ("surfaces",), ("dataset", "d.toml"), ("body", "taps")),
+    ):
+        for path in ("file", "file/below"):
+            assert "file: is a file; name a folder" in refused(*words, "-o", path), words
+
+
+def test_every_command_that_writes_a_file_can_be_told_to_replace_it():
+    waiting, writing = [_parser()], []
+    while waiting:
+        parser = waiting.pop()
+        for action in parser._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                waiting += action.choices.values()
+        waiting += parser._actions_by_word.values()
+        into = parser.options.get("-o")
+        if into is not None and into.metavar != "FOLDER":
+            writing.append(parser.prog)
+            assert "--overwrite" in parser.options, parser.prog
+    assert len(writing) > 9

@@ -103,8 +103,11 @@ def test_what_is_named_wrongly_is_answered_with_what_there_is(command, tmp_path)
     ):
         code, _, err = command(*words, "-o", out)
         assert (code, said in err) == (2, True), err
-    _, _, err = command("render", tune, "--presets", tmp_path / "none", "--channel", 9, "-o", out)
-    assert "none: no such folder yet; --preset chooses a preset" in err
+    for words in (("render", tune, "-o", out), ("serve",), ("presets", "list")):
+        for path in (tmp_path / "none", tune):
+            code, _, err = command(*words, "--presets", path)
+            assert code == 2
+            assert f"{path.name}: no such folder; --preset chooses a preset" in err
 
 
 def test_json_names_the_part_and_what_was_chosen_moved_and_taken(command, tmp_path):

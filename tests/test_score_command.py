@@ -112,7 +112,7 @@ def test_a_score_is_written_in_either_notation_and_says_what_is_left_out(
         assert [each["length"] for each in notes] == [1.0, 1.5, 1.5, 2.0, 2.0]
         assert notes[0]["marks"] == [["up-bow", None]]
         assert "exists; --overwrite replaces it" in refused("score", "write", tune, "-o", target)
-    assert "out.jianpu: not written: pitches between semitones" in err
+    assert "out.jianpu: written, without pitches between semitones" in err
     assert "ends in none of" in refused("score", "write", tune, "-o", tmp_path / "out.pdf")
     assert "overwrite an input" in refused("score", "write", tune, "-o", tune)
     words = ("score", "write", tune, "-o", tmp_path / "b.jianpu", "--part")

@@ -84,3 +84,20 @@ def test_what_is_wrong_is_reported_in_one_line(refused):
     refused("nothing was measured", yehu.body.fit, measured)
     refused("modes", yehu.body.fit, measured, modes=65)
     refused("band_hz", yehu.body.fit, measured, band_hz=(1.0, np.nan))
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: yehu.body.read([]),
+        lambda: yehu.body.read(7),
+        lambda: yehu.body.read([None]),
+        lambda: yehu.body.made_taps(count=-1),
+        lambda: yehu.body.made_taps(count=2.5),
+        lambda: yehu.plot.schelleng(None),
+    ],
+)
+def test_wrong_arguments_of_the_laboratory_are_errors_in_one_line(call):
+    with pytest.raises(yehu.YehuError) as raised:
+        call()
+    assert "\n" not in str(raised.value)

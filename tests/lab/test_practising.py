@@ -126,7 +126,9 @@ def test_practising_goes_on_from_what_lies_beside_the_instrument(command, tmp_pa
     instrument.write_text("[string_1]\nreach = 6.0\n[string_2]\nreach = 3.0\n")  # tuned sooner
     table = default_bowing_table()
     write_bowing_table(beside, table, RATE)
-    code, _, error = command("practise", "--instrument", instrument, "-o", beside, "--quiet")
+    code, _, error = command(
+        "practise", "--instrument", instrument, "-o", beside, "--overwrite", "--quiet"
+    )
     assert code == 0, error
     same = np.isclose(read_bowing_table(beside), table, atol=1e-4).all(axis=-1)
     same[0, :, 70 - FIRST_NOTE] = True

@@ -5,9 +5,11 @@ import re
 
 import pytest
 
+from yehu_server.api.checks import setting
 from yehu_server.errors import ParameterError
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Curve, Place
-from yehu_server.params.table import ENGINE, TABLE, assignment, find, read
+from yehu_server.params.table import ENGINE, NAMES, TABLE, assignment, find, read
 
 # ---------------------------------------------------------------- every row
 
@@ -28,9 +30,17 @@ def test_each_row_is_complete_and_found_by_its_address():
 
 def test_each_row_takes_its_range_and_clamps_what_is_beyond():
     for param in TABLE:
-        for value in (param.default, param.lo, param.hi):
+        top = max(NAMES.get(param.address, {"": param.hi}).values())
+        for value in (param.default, param.lo, top):
             assert param.clamped(value) == value, param.address
             assert assignment(f"{param.address}={value!r}") == (param.address, value)
+            assert setting(param.address, value) == (param.address, value)
+        if param.is_choice:
+            for value in (param.lo + 0.5, top + 1.0):
+                with pytest.raises(ParameterError, match=r"expected .* from|is not within"):
+                    assignment(f"{param.address}={value!r}")
+                with pytest.raises(ParameterError, match=r"expected .* from|is not within"):
+                    setting(param.address, value)
         assert param.clamped(param.hi * 2.0 + 1.0) == param.hi, param.address
         assert param.clamped(param.lo - 1e300) == param.lo, param.address
         assert isinstance(param.clamped(1), float), param.address
@@ -65,6 +75,16 @@ def test_the_engine_holds_its_rows_in_the_order_of_the_table():
 
 
 # ---------------------------------------------------------------- finding and setting
+
+
+def test_a_choice_may_be_named_in_python_as_on_the_command_line():
+    for address, names in NAMES.items():
+        for name, value in names.items():
+            assert assignment(f"{address}={name}") == setting(address, name) == (address, value)
+    assert setting("/playing/articulation", ARTICULATIONS[3].chinese)[1] == 3.0
+    for address in ("/playing/articulation", "/bow/speed"):
+        with pytest.raises(ParameterError, match=f"{address}: 'spicato' is n"):
+            setting(address, "spicato")
 
 
 @pytest.mark.parametrize(

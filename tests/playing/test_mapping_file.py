@@ -6,9 +6,10 @@ import pytest
 
 from yehu_server.errors import MappingError, ParameterError
 from yehu_server.params.spec import Curve
+from yehu_server.params.table import assignment
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.mapping import load, mapping_folder, user_mappings
-from yehu_server.playing.mapping_file import read_mapping_file, setting
+from yehu_server.playing.mapping_file import read_mapping_file
 from yehu_server.playing.mapping_writer import canonical
 from yehu_server.util.documents import MAX_ERRORS
 
@@ -228,8 +229,8 @@ def test_what_is_tidied_says_what_it_shall_whatever_the_text_said():
 
 def test_an_articulation_is_set_by_its_chinese_name_too():
     for text in ("articulation=颤音", "/playing/articulation=trill", "articulation=20"):
-        assert setting(text) == ("/playing/articulation", 20.0)
-    assert setting("vibrato=30") == ("/playing/vibrato", 30.0)
+        assert assignment(text) == ("/playing/articulation", 20.0)
+    assert assignment("vibrato=30") == ("/playing/vibrato", 30.0)
     for wrong in ("articulation=tril", "articulation", "string=颤音", "/room/size=颤音"):
         with pytest.raises(ParameterError):
-            setting(wrong)
+            assignment(wrong)

@@ -16,14 +16,19 @@ import numpy as np
 from yehu_lab.body.curve import Complexes, Curve, Floats
 from yehu_lab.body.measurement import Measurement
 from yehu_lab.body.modes import Modes
-from yehu_server.core.physics.default_quantities import Body, measured_body, read_body
+from yehu_server.core.physics.default_quantities import (
+    Body,
+    Quantities,
+    read_body,
+    read_quantities,
+)
 from yehu_server.core.physics.radiation import response
 from yehu_server.errors import MeasurementError, OutputError
 from yehu_server.util import __version__
-from yehu_server.util.documents import Document
-from yehu_server.util.files import check_target, replacing
+from yehu_server.util.documents import Document, looks_like
+from yehu_server.util.files import check_free, check_target, write_bytes
 
-FORMAT = "yehu-server body"  # in the files that `save` writes, which it may replace
+FORMAT = "yehu-server body"  # in the files that `save` writes
 DIGITS = 7
 
 
@@ -93,15 +98,15 @@ class Fit:
         Raises
         ------
         OutputError
-            Where they cannot be written, or other files are in their place.
+            Where they cannot be written, or are there and `overwrite` is false.
         """
         target = Path(target)
         check_targets(target, overwrite=overwrite)
         body_file = body_file_of(target)
-        _write(body_file, as_text(self), overwrite=overwrite)
+        write_bytes(body_file, as_text(self).encode(), overwrite=overwrite)
         if target == body_file or names_body(target, body_file):
             return (body_file,)
-        _write(target, _instrument(self, body_file), overwrite=overwrite)
+        write_bytes(target, _instrument(self, body_file).encode(), overwrite=overwrite)
         return (target, body_file)
 
 
@@ -124,20 +129,11 @@ def check_targets(target: Path, *, overwrite: bool = False) -> None:
         check_target(path)
     if overwrite:
         return
-    if body_file.exists() and not is_ours(body_file):
-        raise OutputError(f"{body_file}: exists, and is not a fitted body; --overwrite replaces it")
+    check_free(body_file)
     if target != body_file and target.exists() and not names_body(target, body_file):
         raise OutputError(
             f"{target}: exists; write body = {json.dumps(body_file.name)} in it, or --overwrite it"
         )
-
-
-def is_ours(path: Path) -> bool:
-    """Whether a file is one that `save` wrote."""
-    try:
-        return _document(path).json().data.get("format") == FORMAT
-    except MeasurementError:
-        return False
 
 
 def names_body(target: Path, body_file: Path) -> bool:
@@ -194,11 +190,15 @@ def read_fit(path: Path) -> Fit:
     what was measured.
     """
     if path.suffix.lower() == ".toml":
-        named = _document(path).toml().data.get("body")
+        data = _document(path).toml().data
+        kind = looks_like(data)
+        if ("base" not in data or kind) and data.keys().isdisjoint(vars(Quantities())):
+            raise MeasurementError(f"{path}: is not an instrument or body file{kind}")
+        named = data.get("body")
         if named is None:
-            return bare_fit(measured_body())
+            return bare_fit(read_quantities(path).body)
         path = path.parent / str(named)
-    data: Any = _document(path).json().data
+    data = _document(path).json().data
     fitted = bare_fit(read_body(path))
     if "measured" not in data or "fit" not in data:
         return fitted
@@ -244,14 +244,6 @@ def _instrument(fit: Fit, body_file: Path) -> str:
 def _sources(measured: Measurement) -> str:
     names = [re.sub(r"[^ -~]", "?", name) for name in measured.sources]
     return ", ".join(names[:5]) + (" and others" if names[5:] else "") or "a measurement"
-
-
-def _write(path: Path, text: str, *, overwrite: bool) -> None:
-    def may_replace(target: Path) -> bool:
-        return overwrite or is_ours(target)
-
-    with replacing(path, may_replace) as partial:
-        partial.write_text(text, encoding="utf-8")
 
 
 def _columns(curve: Curve | None) -> dict[str, Any] | None:

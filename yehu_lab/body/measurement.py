@@ -80,7 +80,12 @@ def read(
         raise MeasurementError(f"kind: {kind!r} is none of {', '.join((*KINDS, RADIATION))}")
     if any(isinstance(each, str | os.PathLike) for each in (paths, radiation)):
         raise MeasurementError("give a list of paths, such as ['tap1.wav', 'tap2.wav']")
-    files, others = list(map(Path, paths)), list(map(Path, radiation))
+    try:
+        files, others = list(map(Path, paths)), list(map(Path, radiation))
+    except TypeError as error:
+        raise MeasurementError(f"expected paths of files ({error})") from None
+    if not files and not others:
+        raise MeasurementError("name at least one file of measurements")
     taps, responses = _read_all(files, channels, kind)
     radiation_kind = RADIATION if radiation else None
     other_taps, other_responses = _read_all(others, radiation_channels or channels, radiation_kind)

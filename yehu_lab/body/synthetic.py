@@ -11,7 +11,11 @@ import numpy as np
 from yehu_lab.body.curve import Floats
 from yehu_lab.body.tap import Tap
 from yehu_server.core.physics.default_quantities import Body, measured_body
+from yehu_server.errors import ParameterError
 from yehu_server.util.hints import require_package
+from yehu_server.util.values import whole
+
+MAX_TAPS = 1000
 
 OVER = 8  # samples computed for one that is kept
 BLOCK = 512  # samples
@@ -44,6 +48,10 @@ def made_taps(
         Peak of the force (N), and how long the hammer touches (s); a little different each time.
     """
     require_package("scipy", "the body workshop", "body")
+    try:
+        count = whole(count, 1, MAX_TAPS)
+    except ParameterError as error:
+        raise ParameterError(f"count: {error}") from None
     body = body or measured_body()
     random = np.random.default_rng(seed)
     taps = []

@@ -25,7 +25,7 @@ from yehu_server.cli.arguments import (
     add_options,
     picture_output,
 )
-from yehu_server.cli.converters import number_within, positive, target, whole
+from yehu_server.cli.converters import folder, number_within, positive, target, whole
 from yehu_server.cli.terminal import print_result, warn
 from yehu_server.util.files import check_distinct
 
@@ -62,7 +62,7 @@ def add_to(commands: Any) -> None:
         --noise-db DB: level of the noise, dB below the signals (default: 40)
         --overwrite: replace existing files
         """,
-        output={"required": True, "type": target},
+        output={"required": True, "type": folder},
         count={"type": positive, "default": 5},
         noise_db={"type": number_within(0.0, 200.0, "dB"), "default": 40.0},
     )

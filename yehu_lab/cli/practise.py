@@ -6,7 +6,7 @@ find NAME.practice.json by themselves beside an instrument file NAME.toml.
   yehu-server practise -o mine.json
   yehu-server practise --instrument heavy_bridge.toml -o heavy_bridge.practice.json
   yehu-server practise --preset sul-ponticello -o near.json
-  yehu-server practise --tuning chaozhou-seven-equal -o chaozhou.json
+  yehu-server practise --tuning chaozhou-seven-equal --keyboard-map chaozhou-keys -o chaozhou.json
   yehu-server render tune.mid -o tune.wav --practice mine.json
 
 It takes a quarter of an hour or more on two cores. It begins with the table beside the instrument
@@ -21,12 +21,13 @@ from yehu_server.cli.arguments import (
     add_instrument,
     add_options,
     add_reporting,
+    check_new,
     instrument_of,
 )
 from yehu_server.cli.converters import target
 from yehu_server.cli.playing_options import add_tuning, tuning_of
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar
-from yehu_server.util.files import check_distinct, check_target
+from yehu_server.util.files import check_distinct
 
 
 def add_to(commands: Any) -> None:
@@ -36,6 +37,7 @@ def add_to(commands: Any) -> None:
         parser,
         """
         -o --output OUT.json: the file to write
+        --overwrite: replace OUT.json if it exists
         --rate HZ: sample rate (default: 44100)
         """,
         output={"required": True, "type": target},
@@ -66,8 +68,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_rate(arguments.rate)
     tuning = tuning_of(arguments)
     own = [*tuning.files, *([] if arguments.instrument is None else [arguments.instrument])]
-    check_target(arguments.output)
     check_distinct({"-o": arguments.output}, own)
+    check_new(arguments)
     values = {} if arguments.preset is None else Presets().load(arguments.preset).values
     quantities = instrument_of(arguments)
     beside = bowing_table_beside(arguments.instrument)
@@ -87,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
         with progress_bar(arguments, "practising", "notes") as progress:
             table = search.learn(progress, table=table, places=places)
         improved += search.notes_changed
-    write_bowing_table(arguments.output, table, arguments.rate)
+    write_bowing_table(arguments.output, table, arguments.rate, overwrite=arguments.overwrite)
     fields = {"rate": arguments.rate, "improved": improved}
     text = f"{arguments.output}: {improved} notes at places of the bow are bowed otherwise now"
     print_report(arguments, fields, text)

@@ -21,6 +21,7 @@ from yehu_lab.sweeps.result import Result
 from yehu_lab.sweeps.study import limits_of
 from yehu_server.errors import ParameterError
 from yehu_server.plot.axes import axes_of
+from yehu_server.util.values import brief
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -276,6 +277,8 @@ def map_of(sweep: Result, grid: Array, x: str, y: str, place: Mapping[str, int])
 
 
 def _axis_of(sweep: Result, names: tuple[str, ...]) -> str:
+    if not isinstance(sweep, Result):
+        raise ParameterError(f"expected a sweep, of `yehu.sweep`, got {brief(sweep)}")
     for name in names:
         if name in sweep.axes:
             return name

@@ -44,6 +44,6 @@ def as_data(table: Array, rate: float) -> dict[str, Any]:
     return {"format": FORMAT, "version": VERSION, "rate": rate, "bowing": bowing}
 
 
-def write_bowing_table(path: Path, table: Array, rate: float) -> None:
+def write_bowing_table(path: Path, table: Array, rate: float, *, overwrite: bool = True) -> None:
     """Write a practice file; raises OutputError where it cannot be written."""
-    write_bytes(path, as_text(as_data(table, rate)).encode())
+    write_bytes(path, as_text(as_data(table, rate)).encode(), overwrite=overwrite)

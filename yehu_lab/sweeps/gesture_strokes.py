@@ -20,7 +20,7 @@ from yehu_lab.sweeps.note_strokes import distinct
 from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.physics.layout import F_HAMMER, V_B
 from yehu_server.core.player.note_tables import wave_speed
-from yehu_server.errors import ParameterError
+from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.scores.gesture import CONTROLS, Gesture, gesture_from
 from yehu_server.util.documents import Fields
 
@@ -56,6 +56,8 @@ class GestureBow:
             if axis.name == ACCELERATION:
                 self._check_acceleration(axis)
                 continue
+            if not _is_control(axis.name) and (hint := did_you_mean(axis.name, CONTROLS)):
+                raise ParameterError(f"{axis.name}: unknown entry{hint}")
             ends: set[Value] = set(axis.values)
             numbers = [value for value in axis.values if not isinstance(value, str)]
             if _is_control(axis.name) and len(numbers) == len(axis.values):

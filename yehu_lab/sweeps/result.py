@@ -21,7 +21,7 @@ from yehu_lab.sweeps.study import Study, study_of
 from yehu_server.errors import ParameterError
 from yehu_server.simulation.labels import as_data, as_json, hash_of
 from yehu_server.util import __version__
-from yehu_server.util.files import replace_any, replacing
+from yehu_server.util.files import replacing
 from yehu_server.util.hints import require_package
 from yehu_server.util.npz_file import read_npz
 
@@ -175,12 +175,14 @@ class Result:
     def save(self, target: str | os.PathLike[str]) -> None:
         """Write one compressed ``.npz`` file; the same result makes the same bytes.
 
+        It replaces what is there.
+
         Raises
         ------
         OutputError
             Where it cannot be written.
         """
-        with replacing(Path(target), replace_any) as partial, partial.open("wb") as file:
+        with replacing(Path(target)) as partial, partial.open("wb") as file:
             np.savez_compressed(file, allow_pickle=False, **self.arrays())
 
     def arrays(self) -> dict[str, Array]:

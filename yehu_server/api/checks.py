@@ -14,7 +14,7 @@ from yehu_server.core.engine.warming import CALLED, COMPILING, warm_up
 from yehu_server.core.physics.default_quantities import Body, Quantities, override, read_quantities
 from yehu_server.core.physics.grid import MAX_RATE, MIN_RATE
 from yehu_server.errors import ParameterError
-from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, find
+from yehu_server.params.table import HIGHEST_A4, LOWEST_A4, find, named, there_is
 from yehu_server.playing.mapping import DEFAULT, load
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.preset_folders import Presets
@@ -73,11 +73,17 @@ def whole(value: Any, name: str, lo: float, hi: float) -> int:
 
 
 def setting(address: Any, value: Any) -> tuple[str, float]:
-    """Return an address of the table, and a value within its range; raises ParameterError."""
+    """Return an address of the table, and a value within its range, which may have a name.
+
+    Raises ParameterError.
+    """
     if not isinstance(address, str):
         raise ParameterError(f"{address!r}: expected an address, such as '/playing/vibrato'")
     param = find(address)
-    return address, number(value, address, param.lo, param.hi, param.unit)
+    if isinstance(value, str):
+        return address, named(param, value)
+    found = number(value, address, param.lo, param.hi, param.unit)
+    return address, there_is(param, found)
 
 
 def settings_of(settings: Mapping[str, float] | None) -> tuple[tuple[str, float], ...]:

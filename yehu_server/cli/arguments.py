@@ -13,12 +13,18 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
-from yehu_server.cli.converters import target
+from yehu_server.cli.converters import folder, target
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import did_you_mean, one_line
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
 from yehu_server.params.table import BY_ADDRESS
-from yehu_server.util.files import check_free, check_target, replace_any, shipped_folder
+from yehu_server.util.files import (
+    check_free,
+    check_target,
+    replace_any,
+    replace_none,
+    shipped_folder,
+)
 from yehu_server.util.hints import command_name
 
 if TYPE_CHECKING:
@@ -266,7 +272,7 @@ def add_folder(
 ) -> None:
     """Add -o, for a folder to write to."""
     add_options(
-        parser, f"-o --output FOLDER: {text}", output={"required": required, "type": target}
+        parser, f"-o --output FOLDER: {text}", output={"required": required, "type": folder}
     )
 
 
@@ -296,6 +302,13 @@ def picture_output(arguments: argparse.Namespace) -> dict[str, Path]:
 
     check_picture(arguments.plot, "--plot", overwrite=arguments.overwrite)
     return {"--plot": arguments.plot}
+
+
+def check_new(arguments: argparse.Namespace, *targets: Path) -> None:
+    """Check, before long work, that files may be written; raises OutputError where they may not."""
+    for path in targets or (arguments.output,):
+        check_target(path)
+        check_free(path, replace_any if arguments.overwrite else replace_none)
 
 
 def replaceable(arguments: argparse.Namespace) -> Callable[[Path], bool]:

@@ -6,10 +6,10 @@ It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compile
   yehu-server build wasm -o page
   yehu-server build library -o lib --rate 48000 96000 --level x86-64-v3
   yehu-server build plugin -o plug-ins
-  yehu-server build tables --mapping wind --tuning chaozhou-seven-equal -o wind.tables
+  yehu-server build tables --mapping wind --preset flautando -o wind.tables
 
 build plugin makes a plug-in for music programs (docs/plugin.md). build tables writes a mapping, a
-tuning and presets for pages and C programs, as numbers; docs/ahead.md describes how they use them.
+tuning and presets to a binary file, for pages and C programs; docs/ahead.md describes how.
 """
 
 import argparse
@@ -41,8 +41,8 @@ def add_to(commands: Any) -> None:
     add_options(
         library,
         """
-        --level NAME: level of processors: x86-64-v3 (with AVX2) or x86-64-v2; aarch64 (default: the
-            lowest of this kind of machine)
+        --level NAME: processors that it runs on: x86-64-v3 (with AVX2) or x86-64-v2; aarch64
+            (default: x86-64-v2 or aarch64, as this machine)
         """,
         level={},
     )
@@ -55,7 +55,7 @@ def add_to(commands: Any) -> None:
         "--target: the system it is for (default: this machine's); all: a folder for each",
         target={"choices": (*NAMES, ALL)},
     )
-    text = "write a mapping, tuning and presets as numbers, for yehu_use_tables"
+    text = "write mapping, tuning and presets to a binary file, for the C function yehu_use_tables"
     tables = add_action(actions, "tables", _tables, text)
     add_tables(tables)
     add_options(

@@ -1,13 +1,15 @@
 """Read options of a command from a TOML file: any option, by its name without the dashes."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import Parser
-from yehu_server.errors import ParameterError, did_you_mean
-from yehu_server.util.documents import Document
+from yehu_server.errors import ParameterError, YehuError, did_you_mean
+from yehu_server.live.network import OSC_ADDRESS, parse_address
+from yehu_server.util.documents import Document, looks_like
 from yehu_server.util.values import brief, flag
 
 NOT_IN_FILES = {"--config": "cannot name another", "--help": "cannot ask for help"}
@@ -36,27 +38,53 @@ def parse(argv: Sequence[str], parser: Parser) -> argparse.Namespace:
     if path is None:
         return arguments
     command: Parser = arguments.command
-    return command.parse_args(argv[1:], read_config(path, command))
+    return command.parse_args(argv[1:], read_config(path, command, arguments.presets))
 
 
-def read_config(path: Path, command: Parser) -> argparse.Namespace:
-    """Read a file's options, checked as the command's own; ParameterError names the line."""
+def read_config(path: Path, command: Parser, presets: Path | None) -> argparse.Namespace:
+    """Read a file's options, checked as the command's own; ParameterError names the line.
+
+    `presets`: the folder of presets that the command line names, if it does.
+    """
     namespace = argparse.Namespace()
 
     def parse_entry(name: str, value: Any) -> None:
         try:
-            command.parse_known_args(_words(command, name, value), namespace)
+            command.parse_known_args(_words(command, name, value, table.data), namespace)
         except argparse.ArgumentError as error:
             raise ParameterError(error.message) from error
 
-    document = Document(path, "a TOML file").read(path)
+    def check(name: str, value: Any) -> None:
+        for word in _words(command, name, value, table.data):
+            _check(*word.partition("=")[::2], presets or getattr(namespace, "presets", None))
+
+    table = Document(path, "a TOML file").read(path).toml()
     command.exit_on_error = False
-    document.toml().each(parse_entry)
+    table.each(parse_entry)
     command.exit_on_error = True
+    table.each(check)
     return namespace
 
 
-def _words(command: Parser, name: str, value: Any) -> list[str]:
+def _check(option: str, text: str, presets: Path | None) -> None:
+    """Refuse (ParameterError) here, where the line is known, what would be refused in its use."""
+    from yehu_server.params.table import assignment
+    from yehu_server.playing.mapping import load
+    from yehu_server.playing.preset_folders import Presets
+
+    readers: dict[str, Callable[[str], object]] = {
+        "--set": assignment,
+        "--mapping": partial(load, user_first=True),
+        "--preset": Presets(presets).find,
+        "--osc": lambda text: parse_address(text, *OSC_ADDRESS),
+    }
+    try:
+        readers.get(option, str)(text)
+    except YehuError as error:
+        raise ParameterError(str(error)) from error
+
+
+def _words(command: Parser, name: str, value: Any, table: Mapping[str, Any]) -> list[str]:
     """The words of the command line that give an option the value of a file's entry."""
     option = f"--{name.replace('_', '-')}"
     if option in NOT_IN_FILES:
@@ -64,7 +92,7 @@ def _words(command: Parser, name: str, value: Any) -> list[str]:
     action = command.options.get(option)
     if action is None:
         known = [other.removeprefix("--") for other in command.options]
-        raise ParameterError(f"unknown option{did_you_mean(name, known)}")
+        raise ParameterError(f"unknown option{did_you_mean(name, known)}{looks_like(table)}")
     if action.nargs == 0 or (action.nargs == "?" and isinstance(value, bool)):
         if flag(value):
             return [option]

@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import os
 import urllib.parse
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,15 @@ def target(text: str) -> Path:
             "nothing is written to standard output; name a file (./- for one of that name)"
         )
     return Path(text)
+
+
+def folder(text: str) -> Path:
+    """Convert the path of a folder to write to, which may be missing."""
+    path = target(text)
+    there = next(filter(os.path.exists, (path, *path.parents)))
+    if not there.is_dir():
+        raise argparse.ArgumentTypeError(f"{there}: is a file; name a folder")
+    return path
 
 
 def web_address(text: str) -> str:
@@ -51,7 +61,8 @@ def within(text: str, lo: float, hi: float, unit: str) -> float:
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
     if not lo <= value <= hi:  # also refuses NaN
-        raise argparse.ArgumentTypeError(f"{text} is not within {lo:g} to {hi:g} {unit}")
+        what = f"{lo:g} to {hi:g} {unit}".rstrip()
+        raise argparse.ArgumentTypeError(f"{text} is not within {what}")
     return value
 
 

@@ -24,6 +24,7 @@ from yehu_server.cli.arguments import (
     add_options,
     add_output,
     add_reporting,
+    check_new,
     check_output,
     picture_output,
 )
@@ -39,7 +40,7 @@ from yehu_server.cli.terminal import (
 )
 from yehu_server.errors import OutputError
 from yehu_server.scores.score import MAX_DURATION_H
-from yehu_server.util.files import check_distinct, check_target, write_bytes
+from yehu_server.util.files import check_distinct, write_bytes
 from yehu_server.util.subtypes import SUBTYPES
 
 if TYPE_CHECKING:
@@ -144,7 +145,7 @@ def _options(arguments: argparse.Namespace) -> tuple[PlayingOptions, Options]:
     check_distinct(outputs, [arguments.recording, *playing.files])
     form = "wav"
     if ending in (*MIDI, *CAPTURE):
-        check_target(arguments.output)
+        check_new(arguments)
     else:
         form = format_of(arguments.output)
         check_output(arguments)

@@ -114,13 +114,13 @@ def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | Non
 
 def _options_of(own: argparse.Namespace, number: int) -> PlayingOptions:
     """The options of a part with arguments of its own."""
-    from yehu_server.playing.mapping_file import setting
+    from yehu_server.params.table import assignment
 
     try:
         playing = playing_options_of(own, is_live=True)
         for part, text in own.part_set:
             if part == number:
-                check_own(group_of(part - 1), setting(text)[0])
+                check_own(group_of(part - 1), assignment(text)[0])
     except YehuError as error:
         raise type(error)(f"part {number}: {error}") from error
     shared = [address for address, _ in playing.start if find(address).is_shared]

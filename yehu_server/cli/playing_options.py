@@ -124,12 +124,19 @@ def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mappi
     return replace(mapping, mpe=mapping.mpe or arguments.mpe)
 
 
+def own_presets(text: str) -> Path:
+    """Read the path of a folder of presets; raises ArgumentTypeError where there is none."""
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"{text}: no such folder; --preset chooses a preset")
+    return Path(text)
+
+
 def add_presets_folder(group: Any) -> None:
     """Add --presets, the folder of the user's presets."""
     add_options(
         group,
         "--presets FOLDER: folder of your own presets (default: in your configuration folder)",
-        presets=Path,
+        presets=own_presets,
     )
 
 
@@ -139,12 +146,12 @@ def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) 
     `is_live`: as of `table_options_of`.
     """
     from yehu_server.core.player.fingering import OpenStrings
-    from yehu_server.playing.mapping_file import setting
+    from yehu_server.params.table import assignment
 
     channel = getattr(arguments, "channel", None)
     playing = replace(
         table_options_of(arguments, is_live=is_live),
-        settings=tuple(setting(text) for text in arguments.set),
+        settings=tuple(assignment(text) for text in arguments.set),
         open_strings=OpenStrings(arguments.open_strings),
         channels=None if channel is None else frozenset(channel),
     )
@@ -163,8 +170,6 @@ def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) ->
     from yehu_server.playing.tuning import RangePolicy
 
     user_first = is_live or arguments.presets is not None
-    if arguments.presets and not arguments.presets.is_dir():
-        warn(f"--presets {arguments.presets}: no such folder yet; --preset chooses a preset")
     playing = PlayingOptions(
         **chosen(PlayingOptions, arguments, but=OTHER),
         mapping=mapping_of(arguments, is_live=is_live),

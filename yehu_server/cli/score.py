@@ -154,7 +154,7 @@ def _write(arguments: argparse.Namespace) -> int:
         warn(f"{arguments.score}: {warning}")
     if lost := {**left, **lost}:
         what = ", ".join(times(name, count) for name, count in sorted(lost.items()))
-        warn(f"{output}: not written: {what}")
+        warn(f"{output}: written, without {what}")
     return 0
 
 

@@ -10,11 +10,17 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from yehu_server.cli.arguments import add_command, add_instrument, add_options, add_reporting
+from yehu_server.cli.arguments import (
+    add_command,
+    add_instrument,
+    add_options,
+    add_reporting,
+    check_new,
+)
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar
 from yehu_server.errors import OutputError
-from yehu_server.util.files import check_distinct, check_target
+from yehu_server.util.files import check_distinct
 
 
 def add_to(commands: Any) -> None:
@@ -27,6 +33,7 @@ def add_to(commands: Any) -> None:
         --energy: also keep the energy ledger
         --strings EVERY: keep the shapes of the strings, once in EVERY samples (default: never)
         -o --output OUT.npz: the arrays to write
+        --overwrite: replace OUT.npz if it exists
         """,
         gesture=Path,
         strings={"type": positive, "default": 0},
@@ -43,19 +50,17 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.simulation.run import COMPILED, simulate
 
     gesture = read_gesture(arguments.gesture, arguments.instrument)
-    check_target(arguments.output)
     own = [] if arguments.instrument is None else [arguments.instrument]
     check_distinct({"-o": arguments.output}, [arguments.gesture, *own])
+    check_new(arguments)
     if arguments.output.suffix.lower() not in ("", ".npz"):
-        raise OutputError(
-            f"{arguments.output}: simulate writes arrays, not sound; name an .npz file"
-        )
+        raise OutputError(f"{arguments.output}: simulate writes arrays; name an .npz file")
     compile_all(arguments, COMPILED if arguments.energy else {})
     with progress_bar(arguments, "simulating") as progress:
         result = simulate(
             gesture, energy=arguments.energy, strings_every=arguments.strings, progress=progress
         )
-    result.save(arguments.output)
+    result.save(arguments.output, overwrite=arguments.overwrite)
     text = simulate_report(arguments.output, result)
     print_report(arguments, dict(result.meta), text)
     return 0

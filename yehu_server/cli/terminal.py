@@ -75,7 +75,7 @@ def warn_of_lost(output: Path, lost: Mapping[str, int]) -> None:
     """Warn of settings of parameters, by address, that a MIDI file is without."""
     if lost:
         what = ", ".join(f"{address} ({count})" for address, count in sorted(lost.items()))
-        warn(f"{output}: MIDI has no controllers for {what}")
+        warn(f"{output}: written, without {what}: MIDI has no controllers for them")
 
 
 def interrupt(*_: object) -> NoReturn:

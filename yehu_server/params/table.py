@@ -1,10 +1,11 @@
 """The parameter table, the only source of names, ranges, defaults and descriptions."""
 
+import contextlib
 from collections.abc import Mapping
 from functools import partial
 
 from yehu_server.errors import ParameterError, did_you_mean, near_address
-from yehu_server.params.articulations import LAST, NUMBER
+from yehu_server.params.articulations import LAST, NUMBER, number_of
 from yehu_server.params.spec import Curve, Param, Place
 
 PREFIX = "/yehu"  # before every address, in OSC and OSCQuery
@@ -261,13 +262,35 @@ def assignment(text: str) -> tuple[str, float]:
     if not equals:
         raise ParameterError(f"{text!r}: expected ADDRESS=VALUE, such as /playing/bow_position=0.1")
     param = find(full_address(address))
-    names = NAMES.get(param.address, {})
     try:
-        number = names[value] if value in names else float(value)
+        number = float(value)
     except ValueError:
-        what = f"neither a number nor one of {', '.join(names)}" if names else "not a number"
-        hint = did_you_mean(value, names)
-        raise ParameterError(f"{param.address}: {value!r} is {what}{hint}") from None
+        number = named(param, value)
     if param.clamped(number) != number:
         raise ParameterError(f"{param.address}: {number:g} is not within {param.range_text}")
-    return param.address, number
+    return param.address, there_is(param, number)
+
+
+def named(param: Param, name: str) -> float:
+    """The value that one of `NAMES` is of; raises ParameterError where it is none.
+
+    An articulation's Chinese name is one as well.
+    """
+    names = NAMES.get(param.address, {})
+    if names is NUMBER:
+        with contextlib.suppress(ParameterError):
+            return float(number_of(name))
+    if name not in names:
+        what = f"neither a number nor one of {', '.join(names)}" if names else "not a number"
+        raise ParameterError(f"{param.address}: {name!r} is {what}{did_you_mean(name, names)}")
+    return names[name]
+
+
+def there_is(param: Param, value: float) -> float:
+    """A value that a person chose; of a choice, ParameterError where it has no such number."""
+    names = NAMES.get(param.address, {})
+    lo, hi = (min(names.values()), max(names.values())) if names else (param.lo, param.hi)
+    if param.is_choice and not (value.is_integer() and lo <= value <= hi):
+        wanted = f"expected a whole number from {lo:g} to {hi:g}, got {value:g}"
+        raise ParameterError(f"{param.address}: {wanted}")
+    return value

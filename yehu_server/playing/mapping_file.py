@@ -1,6 +1,5 @@
 """Read one mapping file (mappings/README.md), or all errors in it with their lines."""
 
-import contextlib
 import itertools
 import math
 from collections.abc import Mapping
@@ -11,9 +10,9 @@ from typing import Any
 from yehu_server.core.midi.tables import MAX_BINDS
 from yehu_server.core.player.note_range import LOWEST_NOTE
 from yehu_server.errors import MappingError, ParameterError
-from yehu_server.params.articulations import ARTICULATIONS, number_of
+from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Curve, Param
-from yehu_server.params.table import assignment, find, full_address
+from yehu_server.params.table import find
 from yehu_server.playing import sources
 from yehu_server.playing.bind import Bind, Breakpoints
 from yehu_server.playing.sources import CHANNELS
@@ -91,15 +90,6 @@ def settable_param(address: str, instead: str) -> Param:
     if param.player_controlled:
         raise ParameterError(f"{address} is moved by the player; {instead} under /playing")
     return param
-
-
-def setting(text: str) -> tuple[str, float]:
-    """Read ``ADDRESS=VALUE`` as `assignment` does, an articulation also by its Chinese name."""
-    name, equals, value = text.partition("=")
-    if full_address(name) == "/playing/articulation":
-        with contextlib.suppress(ParameterError):  # a number, or neither
-            value = str(number_of(value))
-    return assignment(f"{name}{equals}{value}")
 
 
 def read_settings(table: Fields) -> tuple[tuple[str, float], ...]:

@@ -23,7 +23,7 @@ from yehu_server.errors import OutputError
 from yehu_server.scores.gesture import CONTROLS, Gesture, Pluck
 from yehu_server.simulation.labels import as_data, as_json, dimensions, hash_of, label_of
 from yehu_server.util import __version__
-from yehu_server.util.files import replacing
+from yehu_server.util.files import replace_any, replace_none, replacing
 from yehu_server.util.hints import require_package
 from yehu_server.util.npz_file import read_npz
 
@@ -133,16 +133,18 @@ class Simulation:
             raise ValueError("something is missing")
         return cls(arrays, meta)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = True) -> None:
         """Write an uncompressed ``.npz``; ``meta`` is JSON text within it.
+
+        It replaces what is there, unless `overwrite` is false.
 
         Raises
         ------
         OutputError
             Where it cannot be written.
         """
-        target = Path(path)
-        with replacing(target) as partial, partial.open("wb") as file:
+        may_replace = replace_any if overwrite else replace_none
+        with replacing(Path(path), may_replace) as partial, partial.open("wb") as file:
             np.savez(file, allow_pickle=False, meta=np.array(json.dumps(self.meta)), **self.arrays)
 
 

@@ -24,9 +24,29 @@ MANY = sys.maxsize
 _LINE = re.compile(r"\bline ([0-9]+)")
 _DOTTED = re.compile(r"[\w.-]+")
 
+# What only one kind of file has at its top, to tell of one that was taken for another.
+_KINDS = {
+    "bind": "a mapping",
+    "drop": "a mapping",
+    "start": "a mapping",
+    "values": "a preset",
+    "part": "an ensemble file",
+    "vary": "a study",
+    "draw": "a description of a data set",
+    "controls": "a gesture file",
+    "bridge_modes": "a body file",
+    "string_1": "an instrument file",
+    "string_2": "an instrument file",
+}
+
 T = TypeVar("T")
 D = TypeVar("D")
 P = ParamSpec("P")
+
+
+def looks_like(data: Mapping[str, Any]) -> str:
+    """The kind of file that data are of, for the end of an error; nothing where it is unknown."""
+    return next((f"; it looks like {_KINDS[name]}" for name in data if name in _KINDS), "")
 
 
 @dataclass(eq=False)
@@ -223,4 +243,5 @@ class Fields:
             if name not in self._known and name not in others:
                 known = (*self._known, *others)
                 hint = did_you_mean(name, known)
-                self.add_error(name, f"unknown entry{hint} (known: {', '.join(known)})")
+                kind = "" if self.place or self.key else looks_like(self.data)
+                self.add_error(name, f"unknown entry{hint}{kind} (known: {', '.join(known)})")

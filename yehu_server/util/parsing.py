@@ -44,6 +44,8 @@ def parse_json(text: str) -> Any:
     """Parse a JSON text; raises ValueError where it is not JSON, or refused."""
     try:
         return _checked(json.loads(text))
+    except json.JSONDecodeError as error:  # its words are of Python
+        raise ValueError(f"no JSON from line {error.lineno}, column {error.colno} on") from None
     except RecursionError:
         raise ValueError("nested too deeply") from None
 

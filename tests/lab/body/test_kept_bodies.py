@@ -4,6 +4,7 @@ import json
 import math
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from lab.body.bodies import off_db, rms
@@ -12,6 +13,8 @@ from yehu_lab.body.body_file import read_fit
 from yehu_server.core.physics.default_quantities import read_body, read_quantities
 from yehu_server.errors import MeasurementError, OutputError, ParameterError
 from yehu_server.util.files import MAX_SETTINGS_BYTES
+
+ROOT = Path(__file__).resolve().parents[3]
 
 
 def test_an_instrument_or_a_body_file_plays_the_fitted_body_and_keeps_what_was_measured(
@@ -45,7 +48,10 @@ def test_fitting_again_keeps_what_was_added_to_the_instrument(whole_fit, tmp_pat
     whole_fit.save(target)
     target.write_text(target.read_text() + "[string_1]\nT = 52.0\n")
     fewer = replace(whole_fit, warnings=("another",))
-    assert fewer.save(target) == (tmp_path / "mine.body.json",)
+    with pytest.raises(OutputError, match=r"mine\.body\.json: exists; --overwrite replaces it"):
+        fewer.save(target)
+    assert read_fit(target).warnings == whole_fit.warnings
+    assert fewer.save(target, overwrite=True) == (tmp_path / "mine.body.json",)
     assert tomllib.loads(target.read_text())["string_1"] == {"T": 52.0}
     assert read_fit(target).warnings == ("another",)
 
@@ -88,6 +94,21 @@ def test_damaged_measurements_are_reported(whole_fit, tmp_path, where, change, t
     (tmp_path / "mine.json").write_text(json.dumps(data))
     with pytest.raises(MeasurementError, match=told):
         read_fit(tmp_path / "mine.json")
+
+
+@pytest.mark.parametrize("kind", ["presets/hall", "mappings/wind", "examples/dataset", "", "base"])
+def test_toml_of_another_kind_is_no_instrument(tmp_path, kind):
+    path = tmp_path / "x.toml"
+    text = {"": "", "base": 'base = "keyboard"\n[[bind]]\n'}
+    path.write_text(text[kind] if kind in text else (ROOT / f"{kind}.toml").read_text("utf-8"))
+    with pytest.raises(MeasurementError, match=r"x\.toml: is not an instrument or body file"):
+        read_fit(path)
+
+
+def test_an_instrument_on_the_base_of_another_has_its_body(whole_fit, tmp_path):
+    whole_fit.save(tmp_path / "mine.toml")
+    (tmp_path / "slack.toml").write_text('base = "mine.toml"\n[string_1]\nT = 52.0\n')
+    assert read_fit(tmp_path / "slack.toml").body == whole_fit.body
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"bridge_modes": 1}', "x"])

@@ -82,7 +82,7 @@ def test_the_note_of_a_gesture_is_that_of_its_string_and_finger():
 def test_what_cannot_be_varied_is_reported(subtests):
     for vary, wrong in [
         ({"bow_force": [0.1, 99.0]}, "bow_force: 99.0 is not within"),
-        ({"bow_farce": [1.0]}, "bow_farce: unknown entry"),
+        ({"bow_farce": [1.0]}, r"bow_farce: unknown entry; did you mean bow_force\?"),
         ({"instrument.bow.nothing": [1.0]}, "nothing: unknown entry"),
         ({"duration.x": [1.0]}, "no such entry"),
         ({"duration": [0.01]}, "too short to judge"),

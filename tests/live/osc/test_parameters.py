@@ -8,14 +8,17 @@ from wire import f32, values
 
 from yehu_server.live.osc import clients
 from yehu_server.params.spec import Place
+from yehu_server.params.table import NAMES
 from yehu_server.params.table import TABLE as ALL
 
 # A section has as many players as there are, whatever is asked for.
 TABLE = [param for param in ALL if param.address != "/playing/section"]
+CONTINUOUS = [param for param in TABLE if not param.is_choice]
+CHOICES = [param for param in ALL if param.is_choice]
 
 
 def test_every_parameter_is_set_echoed_asked_for_and_kept_within_its_bounds(still):
-    for param in TABLE:
+    for param in CONTINUOUS:
         third = param.lo + (param.hi - param.lo) / 3.0
         for sent, accepted in (
             *((param.hi, param.hi), (param.lo, param.lo), (third, third)),
@@ -45,7 +48,7 @@ def test_every_parameter_takes_any_number_and_refuses_what_is_none(still):
         *((0.37, "f"), (0.37, "d"), (-1e300, "d"), (True, "T"), (False, "F")),
     ]
     others = [(), (0.5, 0.5), ("0.5",), (b"0.5",), (None,), (math.nan,), (math.inf,), (-math.inf,)]
-    for param in TABLE:
+    for param in CONTINUOUS:
         for value, tags in numbers:
             still.send(param.address, value, tags=tags)
             sent = f32(value) if tags == "f" else float(value)
@@ -59,6 +62,28 @@ def test_every_parameter_takes_any_number_and_refuses_what_is_none(still):
             assert (refused.address, address) == ("/yehu/error", "/yehu" + param.address)
             assert reason
         assert still.player.values() == before
+
+
+def test_what_a_choice_answers_is_what_plays(still):
+    for param in CHOICES:
+        at = param.address
+        numbers = NAMES.get(at, {}).values() or (param.lo, param.hi)
+        lo, hi = min(numbers), max(numbers)
+        for sent in (lo, lo + 0.4, lo + 0.5, hi):
+            plays = math.floor(sent + 0.5) if at != "/playing/section" else 1.0
+            assert still.ask(at, sent) == [("/yehu" + at, [plays])]
+            assert still.player.value(at) == plays
+        for sent in (lo - 1.0, hi + 1.0, 1e30, "spicato"):
+            (refused,) = still.ask(at, sent)
+            what = "number" if sent == "spicato" else f"whole number from {lo:g} to {hi:g}, got"
+            assert what in refused.arguments[1]
+            assert still.player.value(at) == plays
+            still.clock.now += clients.FORGIVEN_S
+    for at, name, number in (
+        ("/playing/articulation", "spiccato", NAMES["/playing/articulation"]["spiccato"]),
+        ("/playing/direction", "up", -1.0),
+    ):
+        assert still.ask(at, name) == [("/yehu" + at, [number])]
 
 
 def test_reset_puts_every_parameter_back_and_tells(still):
@@ -144,3 +169,23 @@ def test_a_held_parameter_refuses_other_values_and_says_where_it_stays(still):
     assert "error" not in str(still.ask("/playing/pressure", 0.5))
     (error,) = still.ask("/playing/pressure", 99.0)
     assert error.arguments[1] == "is held at 0.5 by --set; /yehu/release frees it"
+
+
+def test_an_unknown_address_that_is_asked_for_is_named_with_a_near_one(still):
+    (refused,) = still.ask("/get", "/yehu/playing/vibratto")
+    assert "/yehu/playing/vibratto" in refused.arguments[1]
+    assert "did you mean /yehu/playing/vibrato" in refused.arguments[1]
+
+
+def test_true_and_false_are_no_notes(still):
+    for words in ((True, 90.0), (67.0, True)):
+        (refused,) = still.ask("/note", *words)
+        assert "got T or F" in refused.arguments[1]
+        still.clock.now += clients.FORGIVEN_S
+
+
+def test_a_fader_as_velocity_is_told_once_of_the_range(still):
+    heard = still.ask("/note", 67.0, 0.8) + still.ask("/note", 67.0, 0.7)
+    assert [m.arguments for m in heard if m.address == "/yehu/moved"] == [
+        ["/yehu/note", "velocity 0.8 is nearly silent: it is 1 to 127"]
+    ]

@@ -1,5 +1,6 @@
 """The OSC calls that play a part: parameters, notes, values and subscriptions."""
 
+import math
 from collections.abc import Sequence
 from functools import partial
 
@@ -12,8 +13,8 @@ from yehu_server.live.osc.peers import Peer
 from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of
-from yehu_server.params.spec import Param
-from yehu_server.params.table import PREFIX, TABLE, UNIT
+from yehu_server.params.spec import TURNED_ON, Param
+from yehu_server.params.table import NAMES, PREFIX, TABLE, UNIT, find, named, there_is
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.part_state import within_midi
 from yehu_server.playing.player import Player
@@ -46,7 +47,13 @@ class PartCalls(GroupCalls):
 
     def set(self, call: Request, address: str) -> None:
         """Set a parameter."""
-        (value,) = call.numbers(1)
+        param = find(address)
+        if len(call.arguments) == 1 and isinstance(call.arguments[0], str) and address in NAMES:
+            value = named(param, call.arguments[0])
+        else:
+            (value,) = call.numbers(1)
+        if param.is_choice:  # to what plays: faders of surfaces pass through fractions
+            value = there_is(param, float(math.floor(value + TURNED_ON)))
         self._set(call, address, value)
         self._echo(call.peer, [address])
 
@@ -88,11 +95,16 @@ class PartCalls(GroupCalls):
 
     @plays("/note", "Begins a note; velocity 0 ends it.", NOTE, VELOCITY)
     def _note(self, call: Request) -> None:
+        if any(isinstance(each, bool) for each in call.arguments):
+            raise RefusedError("expected a note and a velocity, got T or F")
         note, velocity = call.numbers(2)
         if velocity == 0.0:
             self._player.key_off(note, frame=call.frame)
         else:
             self._player.key_on(note, velocity, frame=call.frame)
+            if 0.0 < velocity < 1.0:  # a fader's
+                what = f"velocity {velocity:g} is nearly silent: it is 1 to 127"
+                self._tell_once(call.peer, f"{self._prefix}/note", what, "velocity")
             tuned, played = self._player.pitches(note)
             if played != tuned:
                 what = "it does not sound" if played is None else f"it sounds as {played:g}"
@@ -102,13 +114,13 @@ class PartCalls(GroupCalls):
         outside = f"{note:g} is outside {range_text(self._player.notes)}; {what}"
         self._tell_once(peer, self._prefix + address, outside)
 
-    def _tell_once(self, peer: Peer, address: str, what: str) -> None:
-        """Send a peer, once for each address, what becomes of a value outside the range."""
+    def _tell_once(self, peer: Peer, address: str, what: str, of: str = "") -> None:
+        """Send a peer, once for each address, what becomes of a value, or one `of` its values."""
         told = self._context.told
-        if (peer, address) not in told:
+        if (peer, address + of) not in told:
             if len(told) >= limits.PEERS:
                 told.clear()
-            told.add((peer, address))
+            told.add((peer, address + of))
             self._clients.send(peer, pack(f"{PREFIX}/moved", address, what))
 
     @plays("/note/off", "Ends a note.", NOTE)

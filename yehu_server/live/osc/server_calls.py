@@ -8,6 +8,7 @@ from yehu_server.live.osc.change_publisher import own_address, topic_of
 from yehu_server.live.osc.context import GroupCalls
 from yehu_server.live.osc.osc_addresses import fitting, is_pattern, readable, unknown
 from yehu_server.live.osc.packets import answer
+from yehu_server.live.traffic_limits import PATTERN
 from yehu_server.params.table import PREFIX, read
 
 
@@ -27,7 +28,8 @@ class ServerCalls(GroupCalls):
         elif PREFIX + wanted in self._context.addresses:
             raise RefusedError(f"{PREFIX}{wanted} has no value")
         else:
-            raise RefusedError(unknown(PREFIX + wanted, parts, [PREFIX + one for one in known]))
+            asked, readable_ones = PREFIX + wanted, [PREFIX + one for one in known]
+            raise RefusedError(f"{asked[:PATTERN]}: {unknown(asked, parts, readable_ones)}")
         call.check_peer()
         read_topic = cache(self._clients.read)
         for address in addresses:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Span, Tempo, Written
@@ -133,7 +133,5 @@ def _steps(span: Span, before: float) -> dict[Fraction, float]:
     count = min(max(int(length / SHORTEST_STEP), 1), STEPS)
     last = span.value or (SLOWER if span.name == "ritardando" else FASTER)
     last = min(max(last, 1.0 / LONGEST_HELD), LONGEST_HELD)
-    return {
-        span.begin + length * step / count: before * (1.0 + (last - 1.0) * step / count)
-        for step in range(count + 1)
-    }
+    beats = accumulate([length / count] * count, initial=span.begin)
+    return {beat: before * (1.0 + (last - 1.0) * step / count) for step, beat in enumerate(beats)}

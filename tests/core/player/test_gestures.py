@@ -160,17 +160,19 @@ def test_strokes_in_a_hurry_come_sooner_and_lighter():
     assert wrong == []
 
 
-def test_only_a_stroke_in_a_hurry_touches_the_outer_string_more_heavily_than_it_goes_on():
+def test_a_quick_stroke_on_the_outer_string_is_heavier_once_the_bow_has_turned():
     wrong = []
-    for key, since, heavier in ((74, 0.4, False), (74, 0.08, True), (67, 0.08, False)):
-        playing = Playing(variation=0.0, listening=0.0)
+    for key, attack, heavier in ((74, 20.0, True), (74, 200.0, False), (67, 20.0, False)):
+        playing = Playing(variation=0.0, listening=0.0, phrasing=0.0, attack=attack)
         playing.on(key)
-        playing.play(since)
+        playing.play(0.4)
         playing.off(key)
         playing.on(key)
-        pressure = playing.play(0.08, "value")[0][:, SLOTS.bow_pressure]
-        if (pressure[0] > 1.3 * pressure[-1]) != heavier:
-            wrong.append((key, since, float(pressure[0] / pressure[-1])))
+        speed, pressure = playing.play(0.12, "value")[0][:, [SLOTS.bow_speed, SLOTS.bow_pressure]].T
+        turned = int(np.argmax(speed * speed[0] < 0.0))
+        is_heavier = pressure[turned] > 2.0 * pressure[-1] and pressure[0] < 0.8 * pressure[turned]
+        if is_heavier != heavier:
+            wrong.append((key, attack, pressure[[0, turned, -1]]))
     assert wrong == []
 
 

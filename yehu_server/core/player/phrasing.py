@@ -81,12 +81,11 @@ MIN_LEAP, MAX_LEAP, LONG_S = 4.5, 9.5, 0.3
 
 # Strokes that follow another within EASY_S are hurried, wholly from HURRIED_S on: the bow comes to
 # its speed in a shorter time and with less pressure, and leaves sooner, so that the string sounds
-# its note in the little time it has. But on the outer string it begins with more: so quick a bow
-# needs it [Guettler], or the string slips twice in a period for all of a short note. Tried on
-# sixteenths, 8 to 16 a second (scripts/playability.py detached).
+# its note in the little time it has. Tried on sixteenths, 8 to 16 a second (scripts/playability.py
+# detached).
 EASY_S, HURRIED_S = 0.16, 0.1
 HURRIED_ATTACK_MS = 14.0
-HURRIED_WEIGHT, HURRIED_TOUCH, HURRIED_RELEASE = 0.7, 1.7, 0.65  # factors
+HURRIED_WEIGHT, HURRIED_RELEASE = 0.7, 0.65  # factors
 
 
 @compiled_exactly

@@ -5,6 +5,8 @@ An event is an object where something asks for one.
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -73,18 +75,31 @@ def code_of(message: Any) -> int | None:
     return (kind << 4 | own["channel"]) << 16 | data[0] << 8 | (data[1] if data[1:] else 0)
 
 
+@contextlib.contextmanager
+def uncollected() -> Iterator[None]:
+    """Let no collector look for garbage among the million objects of a large score."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
 class _Messages(dict[int, Any]):
     """Messages by code, each made once, and without mido's checks, which take long."""
 
     def __missing__(self, code: int) -> mido.Message:
-        name, *fields = NAMES[code >> 20]
-        data = [code >> 8 & 127, code & 127]
-        if name == "pitchwheel":
-            data = [data[0] + (data[1] << 7) - CENTRE]
+        name, first, *second = NAMES[code >> 20]
         message = self[code] = object.__new__(mido.Message)
-        vars(message).update(
-            zip(fields, data, strict=False), type=name, time=0, channel=code >> 16 & 15
-        )
+        own = vars(message)
+        own["type"], own["time"], own["channel"] = name, 0, code >> 16 & 15
+        own[first] = code >> 8 & 127
+        if second:
+            own[second[0]] = code & 127
+        elif name == "pitchwheel":
+            own[first] += (code & 127) * 128 - CENTRE
         return message
 
 
@@ -145,7 +160,8 @@ class Events(Sequence[ScoreEvent]):
         messages = map(known.__getitem__, self.code.tolist())
         times, beats, tracks = (each.tolist() for each in (self.time_s, self.beat, self.track))
         columns = zip(times, messages, beats, tracks, strict=True)
-        return tuple(map(partial(tuple.__new__, ScoreEvent), columns))
+        with uncollected():
+            return tuple(map(partial(tuple.__new__, ScoreEvent), columns))
 
     @property
     def kind(self) -> Array:

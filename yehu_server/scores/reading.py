@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-import gc
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from pkgutil import resolve_name
@@ -19,7 +17,7 @@ from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
-from yehu_server.scores.events import NoteColumns
+from yehu_server.scores.events import NoteColumns, uncollected
 from yehu_server.scores.key_switches import with_key_switches, without_low_keys
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import (
@@ -163,7 +161,7 @@ def read_any(
     has nothing to play, no part of a name, or lasts too long.
     """
     path = Path(path)
-    with _uncollected():
+    with uncollected():
         return _read(path, options, song, max_duration_h, strict=strict)
 
 
@@ -182,18 +180,6 @@ def _read(
         if strict and score.warnings:
             raise DamagedError(f"{score.warnings[0]}: refused by --strict")
     return replace(score, name=path.stem)
-
-
-@contextlib.contextmanager
-def _uncollected() -> Iterator[None]:
-    """Let no collector look for garbage among the million objects of a large score."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
 
 
 def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:

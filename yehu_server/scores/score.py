@@ -21,7 +21,7 @@ import numpy as np
 from yehu_server.core.midi.registered_parameters import MPE_CONFIGURATION, RPN_FINE
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.playing.sources import MPE_FROM
-from yehu_server.scores.events import AFTERTOUCH, CONTROL, Array, Events, NoteColumns
+from yehu_server.scores.events import AFTERTOUCH, CONTROL, Array, Events, NoteColumns, uncollected
 from yehu_server.util.files import error_reason, read_bytes
 
 MAX_DURATION_H = 2.0  # of all that is played, where no other is asked for
@@ -164,7 +164,8 @@ class Score:
     def notes(self) -> tuple[ScoreNote, ...]:
         """The same as objects."""
         columns = (column.tolist() for column in self.note_columns)
-        return tuple(map(ScoreNote._make, zip(*columns, strict=True)))
+        with uncollected():
+            return tuple(map(ScoreNote._make, zip(*columns, strict=True)))
 
     def __post_init__(self) -> None:
         check_duration(self.duration_s, LONGEST_DURATION_H)

@@ -27,7 +27,7 @@ from yehu_server.util.sound_file import is_rendered
 
 SERVE = _parser().parse_args(["serve"]).command
 READERS = {
-    "c.toml": lambda path: read_config(path, SERVE),
+    "c.toml": lambda path: read_config(path, SERVE, None),
     "i.toml": read_quantities,
     "i.json": read_quantities,
     "b.json": read_body,

@@ -124,7 +124,8 @@ def test_a_part_that_is_not_there_is_reported_with_those_that_are(still, players
             ("/get", (f"/part/{number}/playing/volume",)),
         ]:
             (error,) = errors(still.ask(asked, *words))
-            assert error == f"no part {number}: there are parts 1 to 3"
+            about = f"/yehu{words[0]}: " if asked == "/get" else ""
+            assert error == f"{about}no part {number}: there are parts 1 to 3"
     for number in ("", "01", "x", "-1", "1.0", "9" * 5000, "1/part/2"):
         (error,) = errors(still.ask(f"/part/{number}/note", 67.0, 90.0))
         assert "unknown" in error

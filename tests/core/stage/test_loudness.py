@@ -31,7 +31,7 @@ def loudness_db(sound: np.ndarray) -> np.ndarray:
 def air() -> np.ndarray:
     """The first seconds of the slow air, dry."""
     score = read_score(ROOT / "examples" / "slow_air.mid")
-    events = tuple(event for event in score.events if event.time_s < 12.0)
+    events = score.events.where(score.events.time_s < 12.0)
     score = dataclasses.replace(score, events=events, duration_s=12.0)
     blocks = Performance([Part(score)], Options(rate=RATE, is_dry=True)).blocks()
     return np.concatenate(list(blocks))[:, 0]

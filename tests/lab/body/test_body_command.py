@@ -83,7 +83,7 @@ def test_what_cannot_be_done_is_one_line_and_nothing_is_written(
     ):
         refused("body", "fit", response, *words)
         assert not list(tmp_path.iterdir()), words
-    assert "nothing was measured" in refused("body", "fit", "-o", tmp_path / "m.toml")
+    assert "at least one file of measurements" in refused("body", "fit", "-o", tmp_path / "m.toml")
 
 
 @pytest.mark.parametrize(

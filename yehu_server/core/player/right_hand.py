@@ -52,10 +52,10 @@ MIN_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow i
 # little pressure already.
 INNER_ATTACK_FRACTION, MIN_INNER_ATTACK, INNER_ATTACK_MS = 0.65, 0.4, 150.0
 # A quick stroke on the outer string turns with so much more pressure, one that takes
-# SLOW_ATTACK_MS, as a single note's, with none: the sooner the bow has its speed, the more
-# force it needs until the string has caught it [Guettler], or that slips twice in a period for all
-# of a short note. Before the bow has turned the old note would burst out. Tried at 1.7 to 3.6, on notes of 0.1 to 0.3 s; up to
-# 80 ms, single high notes of an erhu were 19 cents flat.
+# SLOW_ATTACK_MS, as a single note's, with none: the sooner the bow has its speed, the more force
+# it needs until the string has caught it [Guettler], or that slips twice in a period for all of a
+# short note. Before the bow has turned the old note would burst out. Tried at 1.7 to 3.6, on notes
+# of 0.1 to 0.3 s; up to 80 ms, single high notes of an erhu were 19 cents flat.
 QUICK_TOUCH, SLOW_ATTACK_MS = 2.8, 40.0
 # Louder is heavier and nearer to the bridge [Schoonderwaldt], at phrasing USUAL_PHRASING: powers of
 # what dynamics and velocity do to the speed, and the largest factor. By ear.

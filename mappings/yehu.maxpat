@@ -2498,7 +2498,7 @@
        "parameter_longname": "/playing/articulation",
        "parameter_shortname": "articulation",
        "parameter_mmin": 0.0,
-       "parameter_mmax": 127.0,
+       "parameter_mmax": 25,
        "parameter_type": 0,
        "parameter_unitstyle": 9,
        "parameter_units": "%.3f"
@@ -2518,7 +2518,7 @@
       104,
       22
      ],
-     "text": "0 to 127",
+     "text": "0 to 25",
      "presentation": 1,
      "presentation_rect": [
       16,

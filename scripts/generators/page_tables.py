@@ -11,7 +11,7 @@ from typing import Any
 from yehu_server.live.osc.status import PART_STATUS, STATUS
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Place
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import TABLE, offered
 from yehu_server.playing.mapping import load
 from yehu_server.scores.gesture import CONTROLS
 
@@ -50,7 +50,7 @@ def parameters(place: Place) -> str:
     return table(
         "address, symbol, range, default, what",
         (
-            [f"`{row.address}`", row.symbol, row.range_text, f"{row.default:g}", row.doc]
+            [f"`{row.address}`", row.symbol, offered(row).range_text, f"{row.default:g}", row.doc]
             for row in TABLE
             if row.place is place and not re.match("/finger/[2-9]/", row.address)
         ),

@@ -6,7 +6,7 @@ import pytest
 from boxes import overlapping
 from surface_readers import READERS
 
-from yehu_server.params.table import BY_ADDRESS
+from yehu_server.params.table import BY_ADDRESS, offered
 from yehu_server.surfaces import common_layout
 
 pytestmark = pytest.mark.parametrize("name", READERS)
@@ -17,11 +17,17 @@ def controls_of(name):
     return READERS[name]().controls
 
 
+def range_on(name, address):
+    """What a surface offers of a parameter: TouchOSC all, as it sends 0 to 1."""
+    param = BY_ADDRESS[address]
+    return param if name == "yehu.tosc" else offered(param)
+
+
 def test_every_parameter_has_one_control_of_its_range_that_begins_at_its_default(name):
     controls = controls_of(name)
     assert sorted(control.address for control in controls) == sorted(BY_ADDRESS)
     for control in controls:
-        param = BY_ADDRESS[control.address]
+        param = range_on(name, control.address)
         assert (control.lo, control.hi) == (param.lo, param.hi)
         assert control.start == pytest.approx(param.default)
 
@@ -31,7 +37,7 @@ def test_a_control_sends_at_its_address_and_has_its_name_and_range_beside_it(nam
         param = BY_ADDRESS[control.address]
         assert control.sends == f"/yehu{param.address}"
         assert common_layout.label(param) in control.texts
-        assert param.range_text in control.texts
+        assert range_on(name, control.address).range_text in control.texts
 
 
 def test_nothing_overlaps_and_all_lies_within_its_page(name, any_table):

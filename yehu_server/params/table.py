@@ -2,6 +2,7 @@
 
 import contextlib
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 
 from yehu_server.errors import ParameterError, did_you_mean, near_address
@@ -286,10 +287,14 @@ def named(param: Param, name: str) -> float:
     return names[name]
 
 
+def offered(param: Param) -> Param:
+    """A parameter with what there is to choose as its range: messages may have higher numbers."""
+    return replace(param, hi=max(NAMES.get(param.address, {}).values(), default=param.hi))
+
+
 def there_is(param: Param, value: float) -> float:
     """A value that a person chose; of a choice, ParameterError where it has no such number."""
-    names = NAMES.get(param.address, {})
-    lo, hi = (min(names.values()), max(names.values())) if names else (param.lo, param.hi)
+    lo, hi = param.lo, offered(param).hi
     if param.is_choice and not (value.is_integer() and lo <= value <= hi):
         wanted = f"expected a whole number from {lo:g} to {hi:g}, got {value:g}"
         raise ParameterError(f"{param.address}: {wanted}")

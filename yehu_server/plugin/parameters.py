@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.preset_file import FIRST_LIVE
 from yehu_server.params.spec import Curve, Param
-from yehu_server.params.table import NAMES, TABLE
+from yehu_server.params.table import NAMES, TABLE, offered
 from yehu_server.plugin.carried import Carried
 
 # A plug-in is a part of one player.
@@ -100,10 +100,9 @@ def _of_table(param: Param, first: Mapping[str, float]) -> HostParameter:
     name = words if group == "playing" else f"{group} {words}"
     # What the player moves; whoever moves it takes it over until the next note.
     name += " by hand" if param.player_controlled and group in HANDS else ""
-    # Messages may have numbers that nothing has yet; a list has what there is.
     names = NAMES.get(param.address, {})
     choices = tuple(sorted(names, key=lambda name: names[name]))
-    hi = max(names.values(), default=param.hi)
+    hi = offered(param).hi
     return HostParameter(
         param.address,
         name[0].upper() + name[1:],

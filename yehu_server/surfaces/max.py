@@ -9,6 +9,7 @@ from py2max.core.common import Rect
 
 from yehu_server.live.network import Address
 from yehu_server.params.spec import Param
+from yehu_server.params.table import offered
 from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.common_layout import Frame, Group, osc_address
 from yehu_server.surfaces.patch_cords import QUIET_MS, Network, width_of
@@ -163,6 +164,7 @@ def _hands(panel: Panel) -> None:
 
 def _dial(panel: Panel, param: Param, x: float, y: float) -> None:
     """Add a dial, with the boxes that send its value and set it without sending."""
+    param = offered(param)
     unit = "" if param.unit == "1" else f" {param.unit}"
     value = {
         "parameter_longname": param.address,

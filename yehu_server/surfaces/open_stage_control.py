@@ -5,6 +5,7 @@ from typing import Any
 
 from yehu_server.live.network import Address
 from yehu_server.params.spec import Curve, Param
+from yehu_server.params.table import offered
 from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.common_layout import Frame, Pad, osc_address
 
@@ -94,6 +95,7 @@ def _pad(pad: Pad) -> Widget:
 
 
 def _fader(param: Param) -> Widget:
+    param = offered(param)
     return {
         "type": "fader",
         "id": param.address,

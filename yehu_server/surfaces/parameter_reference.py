@@ -7,7 +7,7 @@ from yehu_server.live.network import Address
 from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.call import Argument
 from yehu_server.params.spec import Param
-from yehu_server.params.table import UNIT
+from yehu_server.params.table import UNIT, offered
 from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.common_layout import osc_address
 
@@ -123,7 +123,7 @@ def _row(param: Param) -> tuple[str, ...]:
     return (
         _code(osc_address(param.address)),
         escape(param.symbol),
-        f"{param.lo:g} to {param.hi:g}",
+        f"{param.lo:g} to {offered(param).hi:g}",
         escape(unit),
         f"{param.default:g}",
         param.curve.value,

@@ -8,6 +8,7 @@ from itertools import accumulate
 
 from yehu_server.live.network import Address
 from yehu_server.params.spec import Curve, Param
+from yehu_server.params.table import offered
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.common_layout import Group, local_name, osc_address
@@ -131,6 +132,7 @@ def _play(patch: Canvas) -> None:
 
 def _slider(patch: Canvas, param: Param, x: int, y: int) -> None:
     """Add name, slider, number and range of one parameter."""
+    param = offered(param)
     address = osc_address(param.address)
     sent, ends = address + MOVED, f"{param.lo:g} {param.hi:g}"
     slider = f"hsl {SLIDER} 16 {ends} {int(param.curve is Curve.EXP)} 0 {sent} {address} empty"

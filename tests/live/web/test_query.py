@@ -12,7 +12,7 @@ from yehu_server.live.osc.all_calls import CALLS
 from yehu_server.live.osc.osc_addresses import readable
 from yehu_server.live.osc.status import INT_MAX, STATUS, Kind, as_argument
 from yehu_server.live.web.query import ATTRIBUTES, find, node_at
-from yehu_server.params.table import TABLE
+from yehu_server.params.table import TABLE, offered
 
 NOTHING = {Kind.TEXT: "", Kind.GAUGE: 0.0, Kind.COUNTER: 0}
 VALUES = {param.address: param.default for param in TABLE}
@@ -52,7 +52,7 @@ def test_every_parameter_is_described_as_the_table_has_it(subtests, root):
             node = find(root, path)
             assert node["FULL_PATH"] == path
             assert (node["TYPE"], node["ACCESS"]) == ("f", 3)
-            assert node["RANGE"] == [{"MIN": param.lo, "MAX": param.hi}]
+            assert node["RANGE"] == [{"MIN": param.lo, "MAX": offered(param).hi}]
             assert node["CLIPMODE"] == ["both"]
             assert node["DESCRIPTION"].startswith(param.doc)
             assert ("UNIT" in node) == (param.unit != "1")

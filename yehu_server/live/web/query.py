@@ -21,7 +21,7 @@ from yehu_server.live.osc.status import (
 )
 from yehu_server.live.part_addresses import FIRST, PART_PARAMS, group_of
 from yehu_server.params.spec import Param
-from yehu_server.params.table import PREFIX, TABLE
+from yehu_server.params.table import PREFIX, TABLE, offered
 from yehu_server.params.table import UNIT as AS_UNIT
 
 Node = dict[str, Any]
@@ -111,7 +111,7 @@ def _put(root: Node, address: str, described: Node) -> None:
 def _of_param(param: Param, group: str, values: Values) -> Node:
     value = values(group)[param.address]
     doc = f"{param.doc} At {AS_UNIT[1:]} below, the same as 0 to 1."
-    return _of_number(value, param.lo, param.hi, doc) | _units([param.unit])
+    return _of_number(value, param.lo, offered(param).hi, doc) | _units([param.unit])
 
 
 def _of_unit(param: Param, group: str, values: Values) -> Node:

@@ -72,7 +72,8 @@ def compiled_from(path: Path) -> set[Path]:
 
     Empty where it has no such function.
     """
-    statements = ast.parse(path.read_bytes()).body
+    source = path.read_bytes()
+    statements = ast.parse(source).body if jit.__name__.encode() in source else []
     origins: dict[str, tuple[str, str]] = {}
     named: dict[str, set[str]] = {}  # by the names that statements define
     ahead: list[str] = []

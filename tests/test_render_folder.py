@@ -214,8 +214,10 @@ def test_an_interrupted_folder_goes_on_where_it_was(long, command, signum):
     if signum != signal.SIGKILL:
         assert process.returncode == 130
         assert is_one_line(err)
-        assert "1 of 3 scores are in" in err
-        assert list(manifest(long / "out")) == ["a.mid"]
+        # The first is counted once the process that made it has said so.
+        done = list(manifest(long / "out"))
+        assert done in ([], ["a.mid"])
+        assert f"{len(done)} of 3 scores are in" in err
     before = times(long / "out")
     tune(long / "in" / "b.mid")
     code, out, err = command(*words)

@@ -1,6 +1,8 @@
 """A real server by OSC: delays, bursts, who may speak, start and stop."""
 
 import contextlib
+import errno
+import os
 import socket
 from functools import partial
 
@@ -8,7 +10,7 @@ import pytest
 from wire import f32
 
 from yehu_server.errors import DeviceError
-from yehu_server.live.network import Allowed
+from yehu_server.live.network import Allowed, why_not
 from yehu_server.live.osc.listening_sockets import open_both
 from yehu_server.live.web.server import OSCQUERY, listen
 
@@ -90,6 +92,19 @@ def test_others_are_not_named(kind) -> None:
         port = other.getsockname()[1]
         with pytest.raises(DeviceError, match=r"in use$"):
             open_both(HOST, port)
+
+
+def test_on_windows_no_port_of_another_program_is_taken(monkeypatch) -> None:
+    with monkeypatch.context() as windows:
+        windows.setattr(os, "name", "nt")  # there SO_REUSEADDR would take it
+        udp, tcp = open_both(HOST, 0)
+    with udp, tcp:
+        assert tcp.getsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR) == 0
+
+
+def test_windows_says_of_an_address_in_use_what_others_say() -> None:
+    theirs = "Only one usage of each socket address (protocol/network address/port) is permitted"
+    assert why_not(OSError(errno.EADDRINUSE, theirs)) == os.strerror(errno.EADDRINUSE)
 
 
 def test_a_running_server_is_named(live) -> None:

@@ -20,6 +20,7 @@ HTTP_ADDRESS: Address = ("127.0.0.1", 9001)
 # A host's name, or its address in IPv4: labels of 1 to 63 characters, and a final full stop or not.
 _LABEL = r"[A-Za-z0-9_](?:[A-Za-z0-9_-]{0,61}[A-Za-z0-9_])?"
 _NAME = re.compile(rf"{_LABEL}(?:\.{_LABEL})*\.?")
+IN_USE = "Address already in use"  # Windows' text is a sentence on sockets
 ANYWHERE = "0.0.0.0"  # noqa: S104 - nothing is bound to it here
 
 
@@ -73,8 +74,20 @@ def lan_address() -> str:
     return ANYWHERE  # there is no network
 
 
+def listening(address: Address) -> socket.socket:
+    """Listen at an address by TCP, by IPv4 and IPv6 if it is one; raises OSError.
+
+    On Windows SO_REUSEADDR, which Python then leaves out, takes the port of another program.
+    """
+    family = socket.getaddrinfo(*address, type=socket.SOCK_STREAM)[0][0]
+    dualstack = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
+    return socket.create_server(address, family=family, dualstack_ipv6=dualstack)
+
+
 def why_not(error: OSError) -> str:
     """The reason why an address cannot be bound; of one not this machine's, with those that are."""
+    if error.errno == errno.EADDRINUSE:
+        return IN_USE
     if error.errno != errno.EADDRNOTAVAIL:
         return error_reason(error)
     import ifaddr

@@ -5,7 +5,7 @@ import errno
 import socket
 
 from yehu_server.errors import DeviceError, YehuError
-from yehu_server.live.network import format_address, why_not
+from yehu_server.live.network import format_address, listening, why_not
 from yehu_server.live.osc.command_client import OscClient
 
 TRIES_FOR_A_PORT = 20
@@ -34,11 +34,8 @@ def open_both(host: str, port: int) -> tuple[socket.socket, socket.socket]:
 def _bind(family: int, host: str, port: int) -> tuple[socket.socket, socket.socket]:
     with contextlib.ExitStack() as undo:
         udp = undo.enter_context(socket.socket(family, socket.SOCK_DGRAM))
-        tcp = undo.enter_context(socket.socket(family, socket.SOCK_STREAM))
         udp.bind((host, port))
-        tcp.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        tcp.bind((host, udp.getsockname()[1]))
-        tcp.listen()
+        tcp = undo.enter_context(listening((host, udp.getsockname()[1])))
         undo.pop_all()
     return udp, tcp
 

@@ -18,6 +18,7 @@ from aiohttp import web
 from yehu_server.ahead.build import SHIPPED, page_module, shipped_version
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import OutputError, YehuError
+from yehu_server.live.network import listening, why_not
 from yehu_server.live.page.examples import examples, write_capture_headers
 from yehu_server.live.page.facts import facts, module, write
 from yehu_server.util.files import error_reason, make_folder, shipped_folder, write_bytes
@@ -222,9 +223,14 @@ class _Handler(SimpleHTTPRequestHandler):
 def server_of(folder: Path, port: int) -> ThreadingHTTPServer:
     """A server of a folder's files on a port (0: any free), not yet running; or OutputError."""
     try:
-        return ThreadingHTTPServer((HOST, port), partial(_Handler, directory=str(folder)))
+        listener = listening((HOST, port))
     except OSError as error:
-        raise OutputError(f"{HOST}:{port}: {error_reason(error)}") from error
+        raise OutputError(f"{HOST}:{port}: {why_not(error)}") from error
+    handler = partial(_Handler, directory=str(folder))
+    server = ThreadingHTTPServer(listener.getsockname(), handler, bind_and_activate=False)
+    server.socket.close()
+    server.socket = listener
+    return server
 
 
 def url_of(server: ThreadingHTTPServer) -> str:

@@ -22,7 +22,7 @@ from prometheus_client.registry import Collector
 
 from yehu_server.errors import DeviceError, one_line
 from yehu_server.live import traffic_limits as limits
-from yehu_server.live.network import Address, Allowed, format_address, plain, why_not
+from yehu_server.live.network import Address, Allowed, format_address, listening, plain, why_not
 from yehu_server.live.osc.all_calls import more_calls
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.listening_sockets import HTTP_BESIDE
@@ -194,9 +194,7 @@ class WebServer:
 def listen(what: str, host: str, port: int) -> socket.socket:
     """Listen at an address, by IPv4 and IPv6 if it is one; a DeviceError names `what` cannot."""
     try:
-        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
-        dualstack = family is socket.AF_INET6 and socket.has_dualstack_ipv6()
-        return socket.create_server((host, port), family=family, dualstack_ipv6=dualstack)
+        return listening((host, port))
     except OSError as error:
         where = format_address(host, port)
         is_other = what == OSCQUERY and error.errno == errno.EADDRINUSE

@@ -142,7 +142,7 @@ def config_home(tmp_path, monkeypatch) -> Path:
 @pytest.fixture(scope="session")
 def own_presets(_config_home) -> Path:
     """The empty folder that stands for the user's own presets."""
-    return user_config_path("yehu-server") / "presets"
+    return user_config_path("yehu-server", appauthor=False) / "presets"
 
 
 @pytest.fixture(autouse=True)

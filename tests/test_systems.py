@@ -8,9 +8,13 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+import platformdirs
 import pytest
 from llvmlite import binding, ir
+from platformdirs import windows as windows_dirs
 
+from yehu_server.playing import mapping
+from yehu_server.playing.preset_folders import Presets
 from yehu_server.system import clocks, processes
 
 ROOT = Path(__file__).parents[1]
@@ -104,3 +108,11 @@ def test_on_windows_no_wait_keeps_handlers_of_signals_from_running(monkeypatch: 
     monkeypatch.setattr(sys, "platform", "win32")
     processes.wait_for(Ended())
     assert waits == [processes.SIGNALS_EVERY_S] * 3
+
+
+def test_on_windows_files_of_the_user_are_in_one_folder_as_those_of_the_cache(monkeypatch):
+    monkeypatch.setattr(platformdirs, "PlatformDirs", windows_dirs.Windows)
+    monkeypatch.setattr(windows_dirs, "get_win_folder", lambda _name: "/home/me/Local")
+    own = Path("/home/me/Local/yehu-server")
+    assert mapping.user_folder() == own / "mappings"
+    assert Presets().own == own / "presets"

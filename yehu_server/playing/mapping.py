@@ -31,7 +31,7 @@ def mapping_folder() -> Path:
 
 def user_folder() -> Path:
     """The folder of the user's mappings, which need not exist."""
-    return user_config_path("yehu-server") / "mappings"
+    return user_config_path("yehu-server", appauthor=False) / "mappings"
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ class Presets:
 
     def __init__(self, own: Path | None = None, *, user_first: bool = True) -> None:
         self._own_first = user_first
-        self.own = own or user_config_path("yehu-server") / "presets"
+        self.own = own or user_config_path("yehu-server", appauthor=False) / "presets"
         self.shipped = shipped_folder("presets")
 
     def names(self) -> list[str]:

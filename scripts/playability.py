@@ -19,7 +19,6 @@ from measures.in_tune import chromatic, grid, isolated, presets, quarters, stead
 from measures.life import life
 from measures.loudness import evenness, velocity
 from measures.onsets import onsets
-from measures.phrases import phrases
 from measures.shares import Share, whole
 from measures.shuffled import WAYS, shuffled
 from measures.take import Setup
@@ -36,8 +35,7 @@ MEASURES: dict[str, Callable[[Setup], list[Share]]] = {
     each.__name__: each
     for each in (
         *(grid, isolated, chromatic, steady, quarters, legato, bends, tunes, detached),
-        *(life, clicks, onsets, evenness, velocity, shuffled, strings, presets, phrases),
-        vibrato,
+        *(life, clicks, onsets, evenness, velocity, shuffled, strings, presets, vibrato),
     )
 }
 

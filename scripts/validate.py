@@ -13,17 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from validation import (
-    convergence,
-    energy,
-    held_out,
-    ideal,
-    laws,
-    monochord,
-    published,
-    scheme,
-    two_directions,
-)
+from validation import convergence, energy, ideal, laws, monochord, published
 from validation.draw import draw
 from validation.tables import PAGES, page
 
@@ -53,9 +43,6 @@ SUBJECTS: dict[str, Callable[[], Any]] = {
     "energy": energy.measure,
     "convergence": measure_convergence,
     "laws": laws.measure,
-    "held_out": held_out.measure,
-    "scheme": scheme.measure,
-    "two_directions": two_directions.measure,
     "monochord": monochord.measure,
 }
 

@@ -32,10 +32,6 @@ def page(text: str, found: Mapping[str, Any]) -> str:
         "bars": bars(found["convergence"]),
         "energy": energy(found["energy"]),
         "laws": laws(found["laws"]),
-        "held-out": held_out(found["held_out"]),
-        "scheme": scheme(found["scheme"]),
-        "shares": shares(found["two_directions"]["shares"]),
-        "forces": forces(found["two_directions"]["forces"]),
         "published": published(found["published"]),
         "monochord": monochord_strokes(found["monochord"]),
     }
@@ -202,74 +198,6 @@ def laws(found: Sequence[Mapping[str, Any]]) -> list[str]:
     head = ["note", "law", "Helmholtz", "aperiodic", "cells alike", "force at β = 0.13, N"]
     head += ["flattening, cents", "pitch, cents", "centroid", "onset, ms"]
     return table(head, rows)
-
-
-def held_out(found: Mapping[str, Any]) -> list[str]:
-    """Shares of regimes of the strokes by chance, at both rates."""
-    low, high = np.array(found["regimes"]).T
-    rows = [
-        [
-            name,
-            f"{np.mean(low == name):.1%}",
-            f"{np.mean(high == name):.1%}",
-            f"{100.0 * (np.mean(low == name) - np.mean(high == name)):+.1f}",
-            f"± {100.0 * _paired_error(low == name, high == name):.1f}",
-        ]
-        for name in sorted({*low, *high}, key=list(low).count, reverse=True)
-    ]
-    head = ["regime", *(f"{rate / 1e3:g} kHz" for rate in found["rates"])]
-    return table([*head, "difference, points", "its error by chance"], rows)
-
-
-def scheme(found: Sequence[Mapping[str, Any]]) -> list[str]:
-    """What maps are like by the explicit scheme and with modal strings."""
-    rows = []
-    for row in found:
-        is_reference = row["same"] == 1.0
-        against = ["", ""] if is_reference else [f"{row['same']:.0%}", f"{row['cents']:+.1f}"]
-        rows.append(
-            [
-                row["note"],
-                f"{row['scheme']}, {row['rate'] / 1e3:g} kHz",
-                f"{row['helmholtz']:.1%}",
-                f"{row['aperiodic']:.1%}",
-                f"{row['soon']:.1%}",
-                *against,
-            ]
-        )
-    head = ["note", "strings", "Helmholtz", "aperiodic", "begun", "cells alike", "pitch, cents"]
-    return table(head, rows)
-
-
-def shares(found: Mapping[str, Any]) -> list[str]:
-    """What the finger takes in one direction and in two."""
-    rows = [
-        [
-            name,
-            *(
-                text
-                for each in skin.values()
-                for text in (f"{each['share']:.0%}", f"{each['R']:.1f}")
-            ),
-        ]
-        for name, skin in found.items()
-    ]
-    presses = [f"press {press} N" for press in next(iter(found.values()))]
-    return table(["", *(text for press in presses for text in (press, "R, kg/s"))], rows)
-
-
-def forces(found: Mapping[str, Any]) -> list[str]:
-    """The least forces that keep, and that start, Helmholtz motion."""
-    rows = [
-        [note, *(f"{each['keep']:.3f}, {each['start']:.2f}" for each in made.values())]
-        for note, made in found.items()
-    ]
-    return table(["note, string", *next(iter(found.values()))], rows)
-
-
-def _paired_error(one: Any, other: Any) -> float:
-    """The standard error of the difference of two shares of the same strokes."""
-    return float((one.astype(float) - other).std(ddof=1) / np.sqrt(len(one)))
 
 
 def published(found: Mapping[str, Any]) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from yehu_server.core.engine.instrument import Instrument
 
 # Time in which Python acts on a message, beside the device's buffer. With half of it five times as
-# many events were late beside a busy thread (bench/lateness.py).
+# many events were late beside a busy thread (bench/results/reliability.md).
 HANDLING_MS = 1.0
 # Ordinary jitter of the device's callbacks.
 LEEWAY_MS = 0.5

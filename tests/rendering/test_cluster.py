@@ -59,19 +59,6 @@ def test_each_task_is_done_once_and_by_others(processes):
     assert {event.result for event in where.values()} <= pids
 
 
-@pytest.mark.slow
-def test_a_job_whose_worker_dies_is_done_by_another(own, tmp_path):
-    own.add_worker()
-    own.add_worker()
-    until(lambda: workers_of(own) == 2, within_s=LONG_S)
-    with Cluster(str(own.file)) as cluster:
-        found = ends(cluster, some_jobs.fall, [tmp_path / "tried", *range(10)])
-    left = [worker.pid for worker in own.workers if worker.poll() is None]
-    assert len(left) == 1
-    assert found[0].result == left[0]
-    assert not any(event.died for event in found.values())
-
-
 def workers_of(processes: Processes) -> int:
     return processes.log.read_text().count("Registered to")
 
@@ -106,18 +93,6 @@ def test_what_is_set_up_is_set_up_once_in_each_process_and_by_one_at_a_time(own,
     )
     assert len(times) == len(pids)
     assert times[0][1] <= times[1][0]
-
-
-@pytest.mark.slow
-def test_a_worker_that_comes_later_works_too(own):
-    own.add_worker()
-    until(lambda: workers_of(own) == 1, within_s=LONG_S)
-    with Cluster(str(own.file)) as cluster:
-        events = cluster.perform_all(some_jobs.slow, [0.2] * 60)
-        pids = {next(events).result}
-        late = own.add_worker()
-        pids |= {event.result for event in events}
-    assert late.pid in pids
 
 
 # ---------------------------------------------------------------- what strangers answer

@@ -134,26 +134,20 @@ def test_a_note_of_midi_of_the_server_and_of_a_page_is_not_late_for_what_other_p
     assert max(ends) > now + 4 * BLOCK
 
 
-def test_midi_is_not_late_for_what_the_server_is_sent() -> None:
+@pytest.mark.parametrize("by", ["MIDI", "a page"])
+def test_neither_midi_nor_a_page_is_late_for_what_the_server_is_sent(by: str) -> None:
     instrument = live()
     for n in range(8000):
         post(instrument, SERVER, DUE, END, 7, 60.0 + n % 12)
     play(instrument, DUE - instrument.frame)
-    post(instrument, MIDI_INPUTS, 0, MESSAGE, packed([0x90, int(MARK), 100], 0))
+    if by == "MIDI":
+        post(instrument, MIDI_INPUTS, 0, MESSAGE, packed([0x90, int(MARK), 100], 0))
+    else:
+        post_of_page(instrument, 5, instrument.frame, BEGIN, 1, MARK, MARK)
     applied = play(instrument, 4000)
-    (midi,) = frames_of(applied, BEGIN, MARK)
-    assert midi < DUE + BLOCK
+    (frame,) = frames_of(applied, BEGIN, MARK)
+    assert frame < DUE + BLOCK
     assert max(frame for frame, *_ in applied) > DUE + 1000
-
-
-def test_a_page_is_not_late_for_what_the_server_is_sent_nor_the_server_for_pages() -> None:
-    instrument = live()
-    for n in range(8000):
-        post(instrument, SERVER, DUE, END, 7, 60.0 + n % 12)
-    play(instrument, DUE + 10 - instrument.frame)
-    post_of_page(instrument, 5, now := instrument.frame, BEGIN, 1, MARK, MARK)
-    (page,) = frames_of(play(instrument, 4000), BEGIN, MARK)
-    assert page < now + BLOCK
 
 
 @pytest.mark.parametrize("block", [64, 128])

@@ -8,7 +8,7 @@ import pytest
 from core.physics.runs import bump, play, shaped
 
 from yehu_server.core.physics import kernel
-from yehu_server.core.physics.default_quantities import Quantities
+from yehu_server.core.physics.default_quantities import Quantities, override
 
 YEHU = Quantities()
 X_C = YEHU.bridge_x
@@ -58,9 +58,17 @@ def performance(t):
     }
 
 
-@pytest.mark.parametrize("rate", [44100.0, pytest.param(96000.0, marks=pytest.mark.slow)])
-def test_four_seconds_of_playing_create_and_lose_no_energy(rate):
-    run = play(performance, 4.0, rate)
+@pytest.mark.parametrize(
+    ("changes", "seconds", "rate"),
+    [
+        ({}, 4.0, 44100.0),
+        pytest.param({}, 4.0, 96000.0, marks=pytest.mark.slow),
+        ({"directions": "two"}, 2.0, 44100.0),
+        ({"scheme": "modal"}, 1.5, 44100.0),
+    ],
+)
+def test_seconds_of_playing_create_and_lose_no_energy(changes, seconds, rate):
+    run = play(performance, seconds, rate, quantities=override(YEHU, changes))
     balanced(run)
     # It did play: power came in, and each kind of loss took some.
     assert run["power_in"].max() > 0.1

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 from core.physics.runs import play
-from core.physics.test_energy import balanced, performance
-from core.physics.test_passive import any_instrument, any_playing
 from pitch import cents
 
 from yehu_server.api.simulated import simulate
@@ -134,26 +132,6 @@ def test_the_bow_drawn_the_other_way_makes_the_mirrored_motion_to_the_last_bit()
     np.testing.assert_array_equal(there.refined["a"], -back.refined["a"])
 
 
-def test_playing_creates_and_loses_no_energy():
-    run = play(performance, 1.5, quantities=MODAL)
-    balanced(run)
-    for name in ("strings", "bridge", "finger", "hair", "friction"):
-        assert run[f"loss_{name}"].max() > 1e-3, name
-
-
-@pytest.mark.parametrize(
-    "seed", [3, *(pytest.param(n, marks=pytest.mark.slow) for n in range(4, 203))]
-)
-def test_no_instrument_of_modal_strings_gives_energy(seed):
-    """Torsion, wide hair, other friction, felt and up to four fingers, at any rate."""
-    chance = np.random.default_rng(seed)
-    rate = float(np.exp(chance.uniform(np.log(22050.0), np.log(192000.0))))
-    quantities, fingers = any_instrument(chance)
-    playing = any_playing(chance, fingers)
-    quantities = override(quantities, {"scheme": "modal"})
-    balanced(play(playing, 0.1, rate, fingers=fingers, quantities=quantities))
-
-
 def test_a_plucked_note_is_that_of_a_fine_grid():
     """Under a finger and on the whole body, below 3 kHz: nearer than the grid at 44.1 kHz."""
 
@@ -184,16 +162,6 @@ def test_a_string_is_let_go_from_a_triangle_with_the_bridge_at_rest():
     assert not run.arrays["string_1"][0].any()
     assert run.arrays["constraint_residual"].max() < 1e-15
     assert run.meta["friction_bound"] > 0.0
-
-
-def test_a_lost_state_comes_back_at_rest():
-    run = play({"F_N": 0.5, "v_b": 0.2, "press": [1.0]}, 0.05, quantities=MODAL)
-    run.refined["a"][0, :, 0, 5] = np.nan
-    probes, book = np.zeros_like(run.probes[:3]), np.zeros((3, len(layout.LEDGER)))
-    time_loop.run(run.model, run.state, run.refined, run.controls[:3], probes, book)
-    assert run.state["lost"][0] == 1
-    assert np.isfinite(run.refined["a"]).all()
-    assert np.isfinite(probes).all()
 
 
 def test_only_studies_have_modal_strings():

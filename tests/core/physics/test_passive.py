@@ -146,23 +146,25 @@ def in_two_directions(quantities, chance):
     return override(quantities, {"directions": "two", "bow": bow, "finger": finger} | changes)
 
 
-@pytest.mark.parametrize("directions", ["one", "two"])
+@pytest.mark.parametrize("strings", ["in one direction", "in two", "modal"])
 @pytest.mark.parametrize(
     "seeds", [range(3, 5), pytest.param(range(5, INSTRUMENTS + 3), marks=pytest.mark.slow)]
 )
-def test_no_part_of_any_instrument_gives_energy(seeds, directions):
+def test_no_part_of_any_instrument_gives_energy(seeds, strings):
     failed = {}
     for seed in seeds:
         chance = np.random.default_rng(seed)
         rate = float(np.exp(chance.uniform(np.log(22050.0), np.log(192000.0))))
         quantities, fingers = any_instrument(chance)
-        if directions == "two":
+        if strings == "in two":
             quantities = in_two_directions(quantities, chance)
+        elif strings == "modal":
+            quantities = override(quantities, {"scheme": "modal"})
         playing = any_playing(chance, fingers)
         run = play(playing, SECONDS, rate, fingers=fingers, quantities=quantities)
         try:
             balanced(run)
-            if directions == "one":
+            if strings == "in one direction":
                 assert run["power_in"].max() > 1e-3
         except AssertionError as error:
             failed[seed] = str(error)

@@ -85,16 +85,6 @@ def test_without_variation_they_are_still():
     assert (width == 1.0).all()
 
 
-def test_the_sound_is_the_same_for_a_seed_in_any_block_and_another_for_another():
-    def heard(seed: int, block: int) -> bytes:
-        playing = Playing(seed=seed, variation=1.0, vibrato=20.0)
-        playing.on(74)
-        return playing.sound(0.6, block).tobytes()
-
-    assert heard(5, 64) == heard(5, 1000)
-    assert heard(5, 64) != heard(6, 64)
-
-
 @pytest.mark.parametrize(
     ("address", "which"),
     [("/bow/speed", SPEED_DRIFT), ("/bow/force", FORCE_DRIFT), ("/bow/position", POSITION_DRIFT)],

@@ -82,6 +82,7 @@ def test_it_is_the_seeds_in_any_block_and_the_same_live_and_in_a_file():
 
     assert heard(5, 64) == heard(5, 1000)
     assert heard(5, 64) == heard(6, 64)  # without variation there is no chance
+    assert heard(5, 64, variation=1.0, vibrato=20.0) == heard(5, 1000, variation=1.0, vibrato=20.0)
     assert heard(5, 64, variation=0.1) != heard(6, 64, variation=0.1)
     assert heard(5, 64, note_length=0.7) == heard(5, 511, note_length=0.7)
 

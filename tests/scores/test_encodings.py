@@ -41,16 +41,12 @@ def test_each_encoding_is_found_by_the_characters_of_every_day():
     for names, codec in (
         (SIMPLIFIED, "gbk"), (SIMPLIFIED, "gb18030"), (TRADITIONAL, "big5"), (JAPANESE, "cp932"),
         (KOREAN, "cp949"), (RUSSIAN, "cp1251"),
-        ([name for name in RUSSIAN if "«" not in name], "cp866"),
-        ([name for name in RUSSIAN if name != "МЕЛОДИЯ" and "«" not in name], "koi8-r"),
-        (["Журавли", "партия", "сопровождение"], "utf-16-le"),
-        (["간주", "제2바이올린"], "utf-16-be"), (["旋律", "二胡", "主旋律", "古筝"], "utf-16-le"),
     ):  # fmt: skip
         coded = [name.encode(codec) for name in names]
         found = [decoded(each, encoding_of(each)) for each in coded]  # each by itself
         wrong += [(codec, *pair) for pair in zip(names, found, strict=True) if len({*pair}) > 1]
     for names in (SIMPLIFIED, TRADITIONAL, JAPANESE, KOREAN, RUSSIAN):  # all names of a file
-        for codec in ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"):
+        for codec in ("utf-8", "utf-8-sig", "utf-16"):
             coded = [name.encode(codec) for name in names]
             found = [decoded(each, encoding_of(*coded)) for each in coded]
             wrong += [(codec, *pair) for pair in zip(names, found, strict=True) if len({*pair}) > 1]
@@ -75,14 +71,13 @@ def test_latin_names_do_not_become_chinese():
     ("codec", "told"),
     [
         ("gbk", "GB 18030"), ("utf-16", ""), ("utf-8", ""), ("big5", "Big5"),
-        ("utf-16-le", "UTF-16"), ("cp949", "EUC-KR"), ("cp1251", "Windows-1251"),
-        ("koi8-r", "KOI8"), ("cp932", "Shift-JIS"),
+        ("cp949", "EUC-KR"), ("cp1251", "Windows-1251"), ("cp932", "Shift-JIS"),
     ],
 )  # fmt: skip
 def test_the_tune_of_a_midi_file_is_found_by_its_name(codec, told, tmp_path):
     file = mido.MidiFile(type=1)
     names = {"cp949": ("반주", "멜로디"), "cp932": ("ベース", "メロディ")}
-    names |= dict.fromkeys(("cp1251", "koi8-r"), ("Аккомпанемент", "Мелодия"))
+    names |= {"cp1251": ("Аккомпанемент", "Мелодия")}
     other, tune = names.get(codec, ("高胡伴奏", "旋律"))
     for name, key in ((other, 79), (tune, 72)):
         file.tracks.append(mido.MidiTrack([
@@ -102,11 +97,10 @@ def test_the_tune_of_a_midi_file_is_found_by_its_name(codec, told, tmp_path):
 def test_scores_are_read_in_the_encoding_that_they_have_or_say(tmp_path):
     wrong = []
     for codec in (
-        "utf-8", "gbk", "big5", "utf-16", "utf-8-sig", "utf-16-le", "cp932", "cp949", "cp1251",
-        "koi8-r",
+        "utf-8", "gbk", "big5", "utf-16", "utf-8-sig", "cp932", "cp949", "cp1251",
     ):  # fmt: skip
         path = tmp_path / "song.abc"
-        name = {"cp949": "해금", "cp1251": "Скрипка", "koi8-r": "скрипка"}.get(codec, "二胡旋律")
+        name = {"cp949": "해금", "cp1251": "Скрипка"}.get(codec, "二胡旋律")
         path.write_bytes(f"X:1\nT:{name}\nK:C\nCD|\n".encode(codec))
         title = parse_jianpu(f"title={name}\n1 2 3 4\n".encode(codec)).title
         written = read_abc(path)

@@ -7,17 +7,24 @@ from musicxml_text import note, score
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.chosen_parts import DRUMS
-from yehu_server.scores.octaves import NoteSpan, NoteSpans, octaves_of
+from yehu_server.scores.octaves import NoteSpans, octaves_of
 from yehu_server.scores.reading import ReadOptions, percussion_notes, read_any
 from yehu_server.scores.tune_part import OVERLAP, melodic_part, take_turns
 
 LOW = [60, 62, 64, 65, 67]
+Sounding = tuple[float, float, float]  # begin, end, pitch
 
 
-def sounding(*pitches: float | None, length: float = 1.0, begin: float = 0.0) -> list[NoteSpan]:
+def spans_of(parts: list[list[Sounding]]) -> NoteSpans:
+    rows = [(*each, each[2], at) for at, part in enumerate(parts) for each in part]
+    *columns, part = np.array(rows, float).reshape(-1, 5).T
+    return NoteSpans(*columns, part.astype(int))
+
+
+def sounding(*pitches: float | None, length: float = 1.0, begin: float = 0.0) -> list[Sounding]:
     """Notes one after another, None for a rest."""
     return [
-        NoteSpan(begin + length * at, begin + length * (at + 1), (pitch,))
+        (begin + length * at, begin + length * (at + 1), pitch)
         for at, pitch in enumerate(pitches)
         if pitch is not None
     ]
@@ -38,7 +45,7 @@ def test_a_tune_is_moved_as_a_whole_then_by_phrases_then_left_to_the_player():
     ]
     wrong = []
     for pitches, expected, summary in cases:
-        found = octaves_of(NoteSpans.of([sounding(*pitches)]), 0.5)
+        found = octaves_of(spans_of([sounding(*pitches)]), 0.5)
         if [*found.of_notes] != expected or found.summary != summary:
             wrong.append((pitches, found, found.summary))
     assert not wrong
@@ -159,10 +166,8 @@ def test_mpe_is_named_where_no_configuration_says_so(file):
 TUNE = sounding(67, 69, 71, 72, 74, 71, 69, 67)
 BASS = sounding(36, 43, 36, 43, 41, 36, 43, 36)
 DRONE = sounding(*[67] * 8)
-CHORDS = [NoteSpan(at, at + 1.0, (60.0 + step,)) for at in range(8) for step in (0, 4, 7)]
-HELD = [
-    NoteSpan(at, at + 2.0, (key,)) for at in (0, 2, 4, 6) for key in (60.0, 64.0, 67.0, 71.0, 74.0)
-]
+CHORDS = [(at, at + 1.0, 60.0 + step) for at in range(8) for step in (0, 4, 7)]
+HELD = [(at, at + 2.0, key) for at in (0, 2, 4, 6) for key in (60.0, 64.0, 67.0, 71.0, 74.0)]
 DOUBLE_STOP = [TUNE[0], *TUNE]
 WIDE = sounding(40, 60, 80, 100, 40, 60, 80, 100)
 BRIEF = sounding(79, 81)
@@ -191,22 +196,22 @@ def test_the_tune_is_found_among_what_accompanies_it():
     wrong = {
         name: found
         for name, (parts, names, expected) in cases.items()
-        if (found := melodic_part(names, NoteSpans.of(parts))) != expected
+        if (found := melodic_part(names, spans_of(parts))) != expected
     }
     assert not wrong
 
 
 def test_parts_that_take_turns_are_distinguished_from_parts_that_sound_together():
-    assert take_turns(NoteSpans.of([TUNE, sounding(60, 62, begin=8.0), sounding(64, begin=20.0)]))
-    assert take_turns(NoteSpans.of([TUNE, []]))
-    assert not take_turns(NoteSpans.of([TUNE, sounding(60, 62, begin=7.0)]))
+    assert take_turns(spans_of([TUNE, sounding(60, 62, begin=8.0), sounding(64, begin=20.0)]))
+    assert take_turns(spans_of([TUNE, []]))
+    assert not take_turns(spans_of([TUNE, sounding(60, 62, begin=7.0)]))
 
 
 def test_turns_are_those_of_each_pair_of_parts():
     rng = np.random.default_rng(3)
 
     def together(one, other):
-        ways = (min(a.end, b.end) - max(a.begin, b.begin) for a in one for b in other)
+        ways = (min(a[1], b[1]) - max(a[0], b[0]) for a in one for b in other)
         return sum(max(0.0, each) for each in ways)
 
     outcomes = set()
@@ -215,12 +220,12 @@ def test_turns_are_those_of_each_pair_of_parts():
         for number in range(3):
             begins, lengths = np.sort(rng.uniform(0, 10, 4)) + 9.0 * number, rng.uniform(0, 2, 4)
             placed = zip(begins, lengths, strict=True)
-            parts.append([NoteSpan(at, at + length, (60.0,)) for at, length in placed])
-        sounds = [sum(note.end - note.begin for note in part) for part in parts]
+            parts.append([(at, at + length, 60.0) for at, length in placed])
+        sounds = [sum(end - begin for begin, end, _ in part) for part in parts]
         expected = all(
             together(parts[a], parts[b]) <= OVERLAP * min(sounds[a], sounds[b])
             for a, b in ((0, 1), (0, 2), (1, 2))
         )
-        assert take_turns(NoteSpans.of(parts)) == expected
+        assert take_turns(spans_of(parts)) == expected
         outcomes.add(expected)
     assert outcomes == {True, False}

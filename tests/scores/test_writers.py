@@ -1,7 +1,6 @@
 """Scores written as MusicXML and as jianpu are read again as the same scores."""
 
 import math
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -194,7 +193,7 @@ def test_what_a_notation_has_no_sign_for_is_counted_and_the_rest_written():
     again, lost = as_musicxml(whole)
     assert lost == {"pitches that move within a note": 1}
     assert [each.pitch for each in again.parts[0].notes] == [67.25, 69.0, 71.0]
-    fine = replace(other, beat=Fraction(4) + Fraction(1, 99_991))
+    fine = other._replace(beat=Fraction(4) + Fraction(1, 99_991))
     again, lost = as_musicxml(Written((Part("", (note, fine)),)))
     assert lost["beats finer than 1/5040 of a quarter"] == 2
     assert again.parts[0].notes[1].beat == 4

@@ -7,8 +7,6 @@ who moves each note by itself, as in live playing.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -24,34 +22,16 @@ OCTAVES = range(-FARTHEST, FARTHEST + 1)
 NUMBERS = ("", "an octave", "two octaves", "three octaves", "four octaves", "five octaves")
 
 
-class NoteSpan(NamedTuple):
-    """A note to be moved: when it sounds, in any unit, and its pitches (MIDI notes)."""
-
-    begin: float
-    end: float
-    pitches: tuple[float, ...]
-
-
 class NoteSpans(NamedTuple):
-    """The same of the notes of parts, in columns [shape=(notes,)]."""
+    """Notes of parts that may be moved, in columns [shape=(notes,)]."""
 
+    # When each sounds, in any unit.
     begin: Array
     end: Array
     # The lowest and the highest pitch of each; NaN where it has none.
     low: Array
     high: Array
     part: Array  # its number, counted from 0
-
-    @classmethod
-    def of(cls, parts: Sequence[Iterable[NoteSpan]]) -> NoteSpans:
-        """The notes of parts."""
-        rows = [
-            (begin, end, min(pitches, default=math.nan), max(pitches, default=math.nan), part)
-            for part, notes in enumerate(parts)
-            for begin, end, pitches in notes
-        ]
-        begin, end, low, high, part = np.array(rows, float).reshape(-1, len(cls._fields)).T
-        return cls(begin, end, low, high, part.astype(np.int64))
 
     def where(self, chosen: Array) -> NoteSpans:
         """Those of a mask, or in the order of some places."""

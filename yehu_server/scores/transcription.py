@@ -313,7 +313,7 @@ def _loudness(notes: Sequence[Note], loud: Sequence[int]) -> tuple[list[Note], l
     for at, velocity in enumerate(loud):
         around = [loud[near] for near in (at - 1, at + 1) if 0 <= near < len(loud)]
         if now and all(velocity >= each + ACCENT for each in around):
-            marked[at] = replace(marked[at], marks=(*marked[at].marks, Mark("accent")))
+            marked[at] = marked[at]._replace(marks=(*marked[at].marks, Mark("accent")))
         elif not now or _stays_off(loud[at : at + 2], notated.DYNAMICS[now]):
             now = min(notated.DYNAMICS, key=lambda name: abs(notated.DYNAMICS[name] - velocity))
             signs.append(Sign(notes[at].beat, now))

@@ -39,7 +39,7 @@ def read_abc(path: str | os.PathLike[str], song: int | None = None) -> Written:
             raise ScoreError(f"has {len(tunes)} tunes: there is no tune {number}")
         written = _Tune().read([*head, *tunes[number - 1]])
         which = f"tune 1 of {len(tunes)}; --song N takes another"
-        lines = [guess_line(data, encoding), which if len(tunes) > 1 and song is None else ""]
+        lines = [guess_line(encoding), which if len(tunes) > 1 and song is None else ""]
         return replace(written, remarks=(*filter(None, lines), *written.remarks))
 
 

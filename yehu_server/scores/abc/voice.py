@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import lru_cache
 
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores.abc import fields, keywords
@@ -14,7 +15,7 @@ from yehu_server.scores.abc.tokens import KINDS, NOTE, NOTE_AT, TOKEN
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
-from yehu_server.scores.written.ornaments import HALF, WHOLE, Around, around_letter
+from yehu_server.scores.written.ornaments import HALF, WAYS, WHOLE, Around, around_letter
 from yehu_server.scores.written.repeats import MAX_BARS, MAX_TIMES, BarLines
 from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
 from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
@@ -23,7 +24,8 @@ from yehu_server.scores.written.words import meaning_of
 MIDDLE_C = 60.0
 LONGEST = 64  # quarters of a note
 MAX_BARS_REST = 1000
-ONE = Fraction(1)
+ONE, GRACE = Fraction(1), Fraction(1, 4)
+_NOTE, _UNDERSTOOD = re.compile(NOTE), re.compile(rf"{NOTE}|[\s\[\]{{}}/]")
 Pitched = tuple[float, Fraction, Around]
 
 
@@ -42,6 +44,7 @@ class VoiceReader:
         self._alters = dict.fromkeys(LETTERS, 0.0)
         self._fifths = 0
         self._properties = {"clef": 0, "octave": 0, "transpose": 0}
+        self._middle_c = MIDDLE_C  # as it sounds
         self._spread = keywords.SPREADS[0]
         self._ratio = (3, 1)  # of broken rhythm
         self.is_hornpipe = False
@@ -77,6 +80,8 @@ class VoiceReader:
     def set_properties(self, found: Mapping[str, int]) -> None:
         """Take what a field says of where notes sound; it holds from here on."""
         self._properties |= found
+        octaves = self._properties["clef"] + self._properties["octave"]
+        self._middle_c = MIDDLE_C + 12.0 * octaves + self._properties["transpose"]
         fifths = self._fifths + 7 * self._properties["transpose"]
         self._bar.fifths = nearest_key(fifths) if self._properties["transpose"] else fifths
 
@@ -165,8 +170,7 @@ class VoiceReader:
     # -- notes -------------------------------------------------------------------------------
 
     def _pitched(self, sign: str | None, letter: str, octaves: str, length: str) -> Pitched:
-        name = letter.upper()
-        octave = letter.islower() + octaves.count("'") - octaves.count(",")
+        name, octave = _place(letter, octaves)
         reached = self._reached(name, octave)
         if sign:
             alter = keywords.ALTERS[sign]
@@ -178,11 +182,9 @@ class VoiceReader:
             alter = self._alter_of(name, octave)
         self._place = name, octave, alter
         around = (WHOLE, HALF)
-        if self._marks:
+        if any(mark.name in WAYS for mark in self._marks):
             around = around_letter(name, octave, alter, self._alter_of)
-        moved = self._properties
-        octave += moved["clef"] + moved["octave"]
-        pitch = MIDDLE_C + SEMITONES[name] + alter + 12.0 * octave + moved["transpose"]
+        pitch = self._middle_c + SEMITONES[name] + alter + 12.0 * octave
         return min(max(pitch, 0.0), 127.0), self._length(length), around
 
     def _reached(self, name: str, octave: int) -> str | tuple[str, int]:
@@ -215,9 +217,10 @@ class VoiceReader:
     def _add(self, notes: list[RawNote], length: Fraction) -> None:
         """Put a note, or a rest, where the music is."""
         self._count_note()
-        if self._tuplet or self._next_factor is not ONE:
-            length *= self._next_factor * (self._tuplet.pop() if self._tuplet else 1)
-            self._next_factor = ONE
+        if self._tuplet:
+            length *= self._tuplet.pop()
+        if self._next_factor is not ONE:
+            length, self._next_factor = length * self._next_factor, ONE
         if length.numerator > LONGEST * length.denominator:
             length = Fraction(LONGEST)
         self._last, self._last_begin = notes, self._at
@@ -241,7 +244,7 @@ class VoiceReader:
 
     def _inner(self, text: str) -> list[re.Match[str]]:
         """The notes in brackets; what else is in them is told."""
-        found, other = [*re.finditer(NOTE, text)], re.sub(rf"{NOTE}|[\s\[\]{{}}/]", "", text)
+        found, other = [*_NOTE.finditer(text)], _UNDERSTOOD.sub("", text)
         if other or not found:
             self._unknown[one_line(f"{other[:40]} in {text[0]}{text[-1]}".strip())] += 1
         return found
@@ -250,7 +253,7 @@ class VoiceReader:
         for each in self._inner(text):
             self._count_note()
             pitch, *_ = self._pitched(*each.groups()[:4])
-            small = RawNote(self._at, Fraction(1, 4), pitch, ("1", "1"), is_grace=True)
+            small = RawNote(self._at, GRACE, pitch, ("1", "1"), is_grace=True)
             self._bar.notes.append(small)
 
     def _break(self, signs: str) -> None:
@@ -371,6 +374,12 @@ class VoiceReader:
         codas = [bar for bar in self.bars if "coda" in bar.lines.jumps]
         if len(codas) > 1 and not any("tocoda" in bar.lines.jumps for bar in self.bars):
             codas[0].lines.jumps ^= {"coda", "tocoda"}
+
+
+@lru_cache
+def _place(letter: str, octaves: str) -> tuple[str, int]:
+    """The letter of a note, and its octave from the middle."""
+    return letter.upper(), letter.islower() + octaves.count("'") - octaves.count(",")
 
 
 def _length(text: str) -> Fraction:

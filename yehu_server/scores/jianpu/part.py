@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from yehu_server.scores.jianpu.characters import Contour, living
@@ -25,16 +25,17 @@ class _Draft:
 
     note: Note
     element: Element
+    end: Fraction  # the beat at which it ends
     returns: bool = False  # slides away and back
     late: Fraction = Fraction(0)  # where what it is tied to begins, from its beginning
 
-    def grow(self, more: Element, marks: Iterable[Mark]) -> None:
-        """Let it go on with another element."""
-        note = self.note
+    def grow(self, more: Element, marks: Iterable[Mark], end: Fraction) -> None:
+        """Let it go on with another element, up to a beat."""
+        note, self.end = self.note, end
         if more.kind is Kind.NOTE:
             self.late = note.length
         grown = note.longer(more.length, marks, self.late)
-        self.note = replace(grown, after=(*note.after, *more.after))
+        self.note = grown._replace(after=(*note.after, *more.after)) if more.after else grown
 
 
 class PartBuilder:
@@ -88,11 +89,11 @@ class PartBuilder:
             self._fifths = element.fifths
             self.keys.append(KeySignature(begin, element.fifths))
         last = self._drafts[-1] if self._drafts else None
-        goes_on = last is not None and last.note.end == begin
+        goes_on = last is not None and last.end == begin
         if element.kind is Kind.NOTE and element.pitch is not None:
             self._note(element, element.pitch, begin, last if goes_on else None)
         elif element.kind is Kind.DASH and last is not None and goes_on:
-            last.grow(element, _marks(element))
+            last.grow(element, _marks(element), self.end)
         else:
             self._rest(element, begin)
         for action in element.actions:
@@ -110,7 +111,7 @@ class PartBuilder:
     def _note(self, element: Element, pitch: float, begin: Fraction, last: _Draft | None) -> None:
         marks = _marks(element)
         if self._tied and last is not None and last.note.pitch == pitch and not element.before:
-            last.grow(element, marks)
+            last.grow(element, marks, self.end)
             self._tied = False
             return
         self._untied()
@@ -118,7 +119,7 @@ class PartBuilder:
             self._span("glissando", self._glissando, begin)
             self._glissando = None
         note = Note(begin, element.length, pitch, tuple(marks), element.before, element.after)
-        self._drafts.append(_Draft(note, element))
+        self._drafts.append(_Draft(note, element, self.end))
 
     def _act(self, action: Meaning, begin: Fraction) -> None:
         kind, name, value = action.kind, action.name, action.value
@@ -176,7 +177,7 @@ class PartBuilder:
         contour: Contour = THERE_AND_BACK if draft.returns else ()
         if element.living:
             contour = living(element.living, note.length)
-        self.notes.append(replace(note, contour=contour))
+        self.notes.append(note._replace(contour=contour) if contour else note)
 
     def _tremolo(self, note: Note, other: float) -> None:
         """Two notes in turns, under one bow."""
@@ -190,8 +191,8 @@ class PartBuilder:
             Note(note.beat + number * length, length, other if number % 2 else note.pitch)
             for number in range(count)
         ]
-        turns[0] = replace(turns[0], marks=note.marks, before=note.before)
-        turns[-1] = replace(turns[-1], after=note.after)
+        turns[0] = turns[0]._replace(marks=note.marks, before=note.before)
+        turns[-1] = turns[-1]._replace(after=note.after)
         self.notes += turns
         self._span("slur", note.beat, turns[-1].beat)
 

@@ -66,7 +66,7 @@ def decoded(data: bytes) -> tuple[str, str]:
         raise ScoreError("is not text in UTF-8 or GB 18030") from None
     if "\0" in text:
         raise ScoreError("is not text")
-    return text, guess_line(data, encoding)
+    return text, guess_line(encoding)
 
 
 def words_of(text: str) -> Iterator[Word | Header]:

@@ -27,7 +27,7 @@ class Loudness:
         signs = [s for s in part.signs if s.name in LEVELS or s.name == "velocity"]
         hairpins = [s for s in part.spans if s.name in HAIRPINS and s.end > s.begin]
         forced = [sign.beat for sign in part.signs if sign.name in FORCED]
-        accents = any(mark.name in ACCENTS for note in part.notes for mark in note.marks)
+        accents = not all(note.names.isdisjoint(ACCENTS) for note in part.notes)
         self.is_marked = bool(signs or hairpins or forced or accents)
         self._forced = _first_notes(part, [sign for sign in part.signs if sign.name in FORCED])
         # Loudness at breakpoints, joined by straight lines; at a jump the same beat stands twice.
@@ -110,7 +110,7 @@ class Loudness:
         if name is not None:
             loudest = max(float(DYNAMICS[FORCED[name][0]]), loudest + FORCED_BY)
         if note.marks:
-            loudest += sum(ACCENTS.get(name, 0.0) for name in {mark.name for mark in note.marks})
+            loudest += sum(ACCENTS.get(name, 0.0) for name in note.names)
         return round(min(max(loudest, SOFTEST), LOUDEST))
 
     def below_db(self, note: Note, beats: Sequence[float]) -> list[float]:

@@ -1,14 +1,17 @@
 """Choose the part of a written score that plays, and move parts by octaves into range."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.playing.stringing import range_text
-from yehu_server.scores.octaves import NoteSpan, NoteSpans, Octaves, octaves_of
+from yehu_server.scores.octaves import NoteSpans, Octaves, octaves_of
 from yehu_server.scores.tune_part import melodic_part
 from yehu_server.scores.written.mark_settings import harmonic_of
-from yehu_server.scores.written.notated import Grace, Note, Part, Written
+from yehu_server.scores.written.notated import Note, Part, Written
 
 REST = 0.5  # quarters of silence between phrases
 FAR_UP = 2  # octaves, from which on a part is no longer a bass
@@ -23,15 +26,13 @@ def default_parts(written: Written, within: NoteRange = YEHU) -> list[int]:
         return sounding
     tune = written.tune
     if tune is None:
-        parts = [[span_of(note, within) for note in part.notes] for part in written.parts]
-        tune = melodic_part(written.names, NoteSpans.of(parts), within)
+        tune = melodic_part(written.names, spans_of(written.parts, within), within)
     return [] if tune is None else [tune]
 
 
 def moved_part(part: Part, within: NoteRange = YEHU) -> tuple[Part, Octaves]:
     """Return a part in the range of an instrument, and by how many octaves its notes were moved."""
-    spans = NoteSpans.of([[span_of(note, within) for note in part.notes]])
-    octaves = octaves_of(spans, REST, within)
+    octaves = octaves_of(spans_of([part], within), REST, within)
     if not octaves.of_notes.any():
         return part, octaves
     moves = (12.0 * octaves.of_notes).tolist()
@@ -61,21 +62,35 @@ def line_of(moves: Sequence[tuple[str, Octaves]], within: NoteRange = YEHU) -> s
     return f"{MOVED} {range_text(within)}: {text}{deeper}"
 
 
-def span_of(note: Note, within: NoteRange = YEHU) -> NoteSpan:
-    """The time of a note (quarters), and its pitches."""
-    # A harmonic is as high as it is written: its finger touches an open string.
+def spans_of(parts: Sequence[Part], within: NoteRange = YEHU) -> NoteSpans:
+    """When the notes of parts sound (quarters), and their pitches."""
+    pitches = [_pitches(note, within) for part in parts for note in part.notes]
+    low, high = np.array(pitches, float).reshape(-1, 2).T
+    begins = np.concatenate([np.zeros(0), *(part.begins_at for part in parts)])
+    ends = np.concatenate([np.zeros(0), *(part.ends_at for part in parts)])
+    number = np.repeat(np.arange(len(parts)), [len(part.notes) for part in parts])
+    return NoteSpans(begins, ends, low, high, number)
+
+
+def _pitches(note: Note, within: NoteRange) -> tuple[float, float]:
+    """The lowest and the highest pitch of a note; NaN where it has none.
+
+    A harmonic is as high as it is written: its finger touches an open string.
+    """
     if not (note.marks or note.before or note.after):
-        return NoteSpan(note.begins_at, note.ends_at, (note.pitch,))
-    graces = [grace.pitch for grace in (*note.before, *note.after)]
-    own = [] if harmonic_of(note, within) is not None else [note.pitch]
-    return NoteSpan(note.begins_at, note.ends_at, tuple(own + graces))
+        return note.pitch, note.pitch
+    pitches = [grace.pitch for grace in (*note.before, *note.after)]
+    if harmonic_of(note, within) is None:
+        pitches.append(note.pitch)
+    return min(pitches, default=math.nan), max(pitches, default=math.nan)
 
 
 def _moved(note: Note, by: float) -> Note:
+    pitch = note.pitch + by
     if not (note.before or note.after):
-        return note.at_pitch(note.pitch + by)
-
-    def small(graces: tuple[Grace, ...]) -> tuple[Grace, ...]:
-        return tuple(replace(grace, pitch=grace.pitch + by) for grace in graces)
-
-    return replace(note, pitch=note.pitch + by, before=small(note.before), after=small(note.after))
+        return note._replace(pitch=pitch)
+    before, after = (
+        tuple(grace._replace(pitch=grace.pitch + by) for grace in graces)
+        for graces in (note.before, note.after)
+    )
+    return note._replace(pitch=pitch, before=before, after=after)

@@ -244,16 +244,16 @@ def rounded(written: Written, allowed: Sequence[int]) -> tuple[Written, int]:
     def note(each: Note) -> Note:
         beat = near(each.beat)
         length = max(near(each.end) - beat, Fraction(1, allowed[0]))
-        return replace(each, beat=beat, length=length)
+        return each._replace(beat=beat, length=length)
 
     parts = []
     for part in written.parts:
-        spans = (replace(each, begin=near(each.begin), end=near(each.end)) for each in part.spans)
-        signs = (replace(each, beat=near(each.beat)) for each in part.signs)
+        spans = (each._replace(begin=near(each.begin), end=near(each.end)) for each in part.spans)
+        signs = (each._replace(beat=near(each.beat)) for each in part.signs)
         notes = tuple(map(note, part.notes))
         parts.append(replace(part, notes=notes, spans=tuple(spans), signs=tuple(signs)))
     tempi = tuple(Tempo(near(each.beat), each.quarters_per_minute) for each in written.tempi)
-    bars = tuple(replace(bar, beat=near(bar.beat)) for bar in written.bars)
+    bars = tuple(bar._replace(beat=near(bar.beat)) for bar in written.bars)
     return replace(written, parts=tuple(parts), tempi=tempi, bars=bars), len(moved)
 
 

@@ -50,6 +50,12 @@ GESTURES: Mapping[str, tuple[str, float]] = {
     "soft-accent": ("swell", 0.5),
 }
 FORCED_GESTURE = "sforzando", 0.4
+PLUCKED = {"pizzicato", "snap-pizzicato"}
+# Marks that may set parameters.
+SETTING = {
+    *CRISP, *SLIDES, *GESTURES, *PLUCKED, "articulation", "up-bow", "down-bow", "inner-string",
+    "outer-string", "open-string", "finger", "tremolo", "vibrato", "harmonic",
+}  # fmt: skip
 
 
 class Node(NamedTuple):
@@ -123,10 +129,10 @@ def actives_of(part: Part) -> list[Active]:
     """The signs that hold at each note of a part; some are written for one note alone."""
     ordered = sorted(((float(sign.beat), sign) for sign in part.signs), key=itemgetter(0))
     signs, now, found = ordered[::-1], PLAIN, []
-    for note in part.notes:
-        if now.gesture or now.is_forced or (signs and signs[-1][0] <= note.begins_at):
+    for begins_at in part.begins_at:
+        if now.gesture or now.is_forced or (signs and signs[-1][0] <= begins_at):
             now = replace(now, gesture=0.0, is_forced=False)
-        while signs and signs[-1][0] <= note.begins_at:
+        while signs and signs[-1][0] <= begins_at:
             now.take(signs.pop()[1])
         found.append(now)
     return found
@@ -134,7 +140,7 @@ def actives_of(part: Part) -> list[Active]:
 
 def harmonic_of(note: Note, within: NoteRange = YEHU) -> Node | None:
     """The node of a note's harmonic; None where it is no harmonic, or one that does not speak."""
-    if not note.marks or note.marked("harmonic") is None:
+    if "harmonic" not in note.names:
         return None
     known = harmonics_of(within)
     near = min(known, key=lambda pitch: abs(pitch - note.pitch))
@@ -143,14 +149,12 @@ def harmonic_of(note: Note, within: NoteRange = YEHU) -> Node | None:
 
 def is_plucked(note: Note, active: Active) -> bool:
     """Whether a note is plucked."""
-    if not note.marks:
-        return active.plucked
-    return active.plucked or bool(note.marked("pizzicato") or note.marked("snap-pizzicato"))
+    return active.plucked or not PLUCKED.isdisjoint(note.names)
 
 
 def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = YEHU) -> Values:
     """Return the parameters that a note's marks and the signs before it set, by address."""
-    if not note.marks and active is PLAIN:
+    if active is PLAIN and SETTING.isdisjoint(note.names):
         return {}
     values, number = _held(active), articulation_of(note, active, quarter_s)
     if not (note.marks or values or active.plucked or number):
@@ -179,7 +183,7 @@ def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = 
     node = harmonic_of(note, within)
     if node is not None:
         values |= {ARTICULATION: float(NUMBER["flageolet"]), STRING: node.string}
-    elif note.marked("harmonic"):
+    elif "harmonic" in note.names:
         values |= PLACES["flautando"]
     return {address: find(address).clamped(value) for address, value in values.items()}
 
@@ -204,7 +208,7 @@ def articulation_of(note: Note, active: Active, quarter_s: float) -> float:
     if (slide := slide_of(note)) or mark:
         return slide or (mark.value if mark else None) or 0.0
     for name, (gesture, least_s) in GESTURES.items():
-        if note.marked(name) and length_s >= least_s:
+        if name in note.names and length_s >= least_s:
             return float(NUMBER[gesture])
     if active.gesture:
         return active.gesture
@@ -216,9 +220,10 @@ def articulation_of(note: Note, active: Active, quarter_s: float) -> float:
 
 def slide_of(note: Note) -> float:
     """The articulation of a written slide into a note, by its number; 0 for none."""
-    if not note.marks:
+    names = note.names
+    if names.isdisjoint(SLIDES):
         return 0.0
-    return next((float(NUMBER[name]) for mark, name in SLIDES.items() if note.marked(mark)), 0.0)
+    return next(float(NUMBER[name]) for mark, name in SLIDES.items() if mark in names)
 
 
 def _trembled(strokes: float) -> Values:

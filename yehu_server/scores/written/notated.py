@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 
@@ -127,8 +129,7 @@ def listed(names: Sequence[str], most: int) -> str:
     return ", ".join([*names[:most], *more])
 
 
-@dataclass(frozen=True)
-class Mark:
+class Mark(NamedTuple):
     """A mark on a note: a name of MARKS, and its values where it has any."""
 
     name: str
@@ -136,8 +137,15 @@ class Mark:
     second: float | None = None
 
 
-@dataclass(frozen=True)
-class Grace:
+NO_NAMES = frozenset[str]()
+
+
+@lru_cache
+def _names_of(marks: tuple[Mark, ...]) -> frozenset[str]:
+    return frozenset(mark.name for mark in marks)
+
+
+class Grace(NamedTuple):
     """A small note before or after another. It takes its time from that one."""
 
     pitch: float
@@ -145,8 +153,7 @@ class Grace:
     marks: tuple[Mark, ...] = ()
 
 
-@dataclass(frozen=True)
-class Note:
+class Note(NamedTuple):
     """A note as written, with tied ones joined to one."""
 
     # Where it begins and how long it is written, in quarters; the length is above 0.
@@ -160,30 +167,32 @@ class Note:
     # How the pitch moves within the note: points of a share of its length, 0 to 1 and ascending,
     # and of semitones from `pitch`, joined by straight lines. Empty: it stays.
     contour: tuple[tuple[float, float], ...] = ()
-    # The beat at which it ends; and as floats, which are had often, where both are.
-    end: Fraction = field(init=False, repr=False, compare=False)
-    begins_at: float = field(init=False, repr=False, compare=False)
-    ends_at: float = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
-        beat, end = self.beat, self.beat + self.length
-        begins_at, ends_at = beat.numerator / beat.denominator, end.numerator / end.denominator
-        vars(self).update(end=end, begins_at=begins_at, ends_at=ends_at)
+    @property
+    def end(self) -> Fraction:
+        """The beat at which it ends."""
+        return self.beat + self.length
 
-    def at_pitch(self, pitch: float) -> Note:
-        """The same note at another pitch; its beats are not worked out again."""
-        moved = object.__new__(Note)
-        vars(moved).update(vars(self), pitch=pitch)
-        return moved
+    @property
+    def begins_at(self) -> float:
+        """The beat at which it begins, as a float."""
+        return self.beat.numerator / self.beat.denominator
+
+    @property
+    def ends_at(self) -> float:
+        """The beat at which it ends, as a float: had much sooner than the fraction."""
+        beat, length = self.beat, self.length
+        under, its_under = beat.denominator, length.denominator
+        return (beat.numerator * its_under + length.numerator * under) / (under * its_under)
 
     def longer(self, by: Fraction, more: Iterable[Mark], late: Fraction) -> Note:
         """The same note, held on with more marks; a fermata of them begins `late` in it."""
         marks = [
-            replace(mark, second=float(late) or None) if mark.name == "fermata" else mark
+            mark._replace(second=float(late) or None) if mark.name == "fermata" else mark
             for mark in more
             if self.marked(mark.name) is None
         ]
-        return replace(self, length=self.length + by, marks=(*self.marks, *marks))
+        return self._replace(length=self.length + by, marks=(*self.marks, *marks))
 
     @property
     def held_from(self) -> Fraction:
@@ -195,10 +204,15 @@ class Note:
     def marks_at(self, beat: Fraction) -> list[Mark]:
         """The marks to be written where it begins, or at what it is tied to."""
         return [
-            replace(mark, second=None) if mark.name == "fermata" else mark
+            mark._replace(second=None) if mark.name == "fermata" else mark
             for mark in self.marks
             if beat == (self.held_from if mark.name == "fermata" else self.beat)
         ]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The names of its marks."""
+        return _names_of(self.marks) if self.marks else NO_NAMES
 
     def marked(self, name: str) -> Mark | None:
         """The mark of a name, if it has one."""
@@ -208,8 +222,7 @@ class Note:
         return None
 
 
-@dataclass(frozen=True)
-class Span:
+class Span(NamedTuple):
     """A sign over several notes: a name of SPANS, and its first and last beat."""
 
     name: str
@@ -218,8 +231,7 @@ class Span:
     value: float | None = None
 
 
-@dataclass(frozen=True)
-class Sign:
+class Sign(NamedTuple):
     """A sign at a beat that holds from there on: a name of SIGNS."""
 
     beat: Fraction
@@ -236,22 +248,30 @@ class Part:
     spans: tuple[Span, ...] = ()
     signs: tuple[Sign, ...] = ()
 
+    @cached_property
+    def begins_at(self) -> list[float]:
+        """The beats at which its notes begin, as floats."""
+        return [note.begins_at for note in self.notes]
+
+    @cached_property
+    def ends_at(self) -> list[float]:
+        """The beats at which its notes end, as floats."""
+        return [note.ends_at for note in self.notes]
+
     def sounds_at(self, beat: Fraction) -> bool:
         """Whether a note sounds at a beat."""
         at = bisect_right(self.notes, beat, key=lambda note: note.beat) - 1
         return at >= 0 and beat < self.notes[at].end
 
 
-@dataclass(frozen=True)
-class Tempo:
+class Tempo(NamedTuple):
     """A tempo, in quarter notes a minute, from a beat on."""
 
     beat: Fraction
     quarters_per_minute: float
 
 
-@dataclass(frozen=True)
-class Bar:
+class Bar(NamedTuple):
     """A bar line: the beat after it, and the bar's number as written."""
 
     beat: Fraction
@@ -298,7 +318,9 @@ class Written:
     @property
     def end(self) -> Fraction:
         """The beat at which the last note ends."""
-        return max((note.end for part in self.parts for note in part.notes), default=Fraction(0))
+        notes = (note for part in self.parts for note in part.notes)
+        last = max(notes, key=lambda note: note.ends_at, default=None)
+        return Fraction(0) if last is None else last.end
 
     def fifths_at(self, beat: Fraction) -> int:
         """The sharps of the key at a beat, below 0 flats; without a key 0."""

@@ -24,6 +24,7 @@ NEAREST, FARTHEST = 0.5, 4.0  # semitones to a note of the key that an ornament 
 WIDEST = 12.0  # semitones, that a hand reaches
 # By ear: a slide away takes so long, or so much of its note, and goes so far (semitones).
 SLIDE_S, SLIDE_SHARE, AWAY = 0.13, 0.4, 2.0
+AWAYS = {"slide-out-up", "slide-out-down"}
 SLIDE_STEPS = 12  # lines that its curve is made of
 STEP_S = 0.01  # between points; the finger takes 8 ms for each
 LAST_S = 0.002
@@ -96,7 +97,7 @@ def filled(mark: Mark, intervals: Around) -> Mark:
 
 def touches_of(note: Note, begin_s: float, end_s: float) -> list[Touch]:
     """Return the touches of a note, its own among them, in the order of their beginnings."""
-    if not (note.marks or note.before or note.after):
+    if not (note.before or note.after) and note.names.isdisjoint(WAYS):
         return [Touch(begin_s, end_s, note.pitch)]
     length_s = end_s - begin_s
     before = _graces(note.before, begin_s, length_s)
@@ -177,7 +178,7 @@ def _trill(held: Touch, step: float) -> list[Touch]:
 def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:
     """The semitones from a note's pitch at seconds, from its beginning on; empty where it stays."""
     length_s = end_s - begin_s
-    if length_s <= LAST_S or not (note.marks or note.contour):
+    if length_s <= LAST_S or not (note.contour or not note.names.isdisjoint(AWAYS)):
         return []
     points = [(begin_s + share * length_s, bend) for share, bend in note.contour]
     points = points or _slide_away(note, begin_s, end_s)
@@ -198,7 +199,7 @@ def curve_of(note: Note, begin_s: float, end_s: float) -> Curve:
 
 def _slide_away(note: Note, begin_s: float, end_s: float) -> Curve:
     """The slide out of a note, if it has one."""
-    way = AWAY * (bool(note.marked("slide-out-up")) - bool(note.marked("slide-out-down")))
+    way = AWAY * (("slide-out-up" in note.names) - ("slide-out-down" in note.names))
     slide_s = min(SLIDE_S, SLIDE_SHARE * (end_s - begin_s))
     if not way:
         return []

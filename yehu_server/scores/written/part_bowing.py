@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+import numpy as np
+
 from yehu_server.scores.phrasing import OVERLAP_S
 from yehu_server.scores.written.mark_settings import DOWN, UP, Active, is_plucked
 from yehu_server.scores.written.notated import Note, Part, Span
@@ -41,10 +43,9 @@ class Played(NamedTuple):
 
 def has_bowing(part: Part) -> bool:
     """Whether a part says which notes share a bow, or how they are bowed."""
-    marks = {mark.name for note in part.notes for mark in note.marks}
     return (
         any(span.name == "slur" for span in part.spans)
-        or not BOWING_MARKS.isdisjoint(marks)
+        or not all(BOWING_MARKS.isdisjoint(note.names) for note in part.notes)
         or any(sign.name in BOWING_SIGNS for sign in part.signs)
     )
 
@@ -57,8 +58,10 @@ def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Pl
     breaths = sorted(sign.beat for sign in part.signs if sign.name == "breath")
     silences = {sign.beat for sign in part.signs if sign.name == "caesura"}
     played = []
-    for note, active in zip(notes, actives, strict=True):
-        begin_s, end_s = clock.seconds(note.begins_at), clock.seconds(note.ends_at)
+    begins, ends = part.begins_at, part.ends_at
+    times = (clock.seconds_of(np.array(beats)).tolist() for beats in (begins, ends))
+    for note, active, begin_s, written_end_s in zip(notes, actives, *times, strict=True):
+        end_s = written_end_s
         if note.marks or active.short:
             end_s = _sounding_end(note, active, begin_s, end_s, slurs.over(note) is not None)
         if breaths:
@@ -69,13 +72,14 @@ def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Pl
             end_s -= min(CAESURA_S, 0.9 * (end_s - begin_s))
         played.append(Played(note, begin_s, end_s))
     for at, (one, other) in enumerate(pairwise(notes)):
-        if one.ends_at != other.begins_at or is_plucked(other, actives[at + 1]):
+        beat = ends[at]
+        if beat != begins[at + 1] or is_plucked(other, actives[at + 1]):
             continue
-        slide = next((name for name in SLIDES if slides[name].joins(one, other)), "")
+        slide = next((name for name in SLIDES if slides[name].joins(beat)), "")
         if slide and not other.before:
             played[at + 1] = _slid_to(played[at], played[at + 1], slide)
             played[at] = played[at]._replace(end_s=played[at + 1].begin_s)
-        is_slurred = slurs.joins(one, other) or actives[at].slurred
+        is_slurred = slurs.joins(beat) or actives[at].slurred
         if (slide or is_slurred) and _can_slur(one, other):
             length_s = played[at + 1].end_s - played[at + 1].begin_s
             end_s = played[at + 1].begin_s + min(OVERLAP_S, 0.5 * length_s)
@@ -87,8 +91,7 @@ def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Pl
 
 def _can_slur(one: Note, other: Note) -> bool:
     """Whether the second note can follow without a new stroke."""
-    is_short = any(mark.name in APART for mark in one.marks)
-    return not is_short and round(one.pitch) != round(other.pitch)
+    return APART.isdisjoint(one.names) and round(one.pitch) != round(other.pitch)
 
 
 def _go_on(played: list[Played], at: int) -> None:
@@ -104,20 +107,21 @@ def _go_on(played: list[Played], at: int) -> None:
 def _sounding_end(
     note: Note, active: Active, begin_s: float, end_s: float, is_slurred: bool
 ) -> float:
-    if not note.marks and is_slurred:
+    names = note.names
+    if not names and is_slurred:
         return end_s
-    if note.marked("caesura"):
+    if "caesura" in names:
         end_s -= CAESURA_S
     shares = [SHARES[mark.name] for mark in note.marks if mark.name in SHARES]
     if active.short and not shares and not is_slurred:
         shares = [SHARES["staccato"]]
     share = min(shares, default=1.0)
-    if note.marked("tenuto") and share < 1.0:
+    if "tenuto" in names and share < 1.0:
         share = max(share, LOURE)
-    if note.marked("fermata"):
+    if "fermata" in names:
         share = 1.0
     end_s = begin_s + share * (end_s - begin_s)
-    return _breathe(begin_s, end_s) if note.marked("breath") else end_s
+    return _breathe(begin_s, end_s) if "breath" in names else end_s
 
 
 def _breathe(begin_s: float, end_s: float) -> float:
@@ -146,10 +150,10 @@ class _Over:
             self._farthest.append(max(span, *last, key=lambda each: each.end))
         self._ends = [float(span.end) for span in self._farthest]
 
-    def joins(self, one: Note, other: Note) -> bool:
-        """Whether a span is over both of two notes that follow each other."""
-        at = bisect_left(self._begins, one.ends_at) - 1
-        return at >= 0 and self._ends[at] >= other.begins_at
+    def joins(self, beat: float) -> bool:
+        """Whether a span is over both the note that ends and the one that begins at a beat."""
+        at = bisect_left(self._begins, beat) - 1
+        return at >= 0 and self._ends[at] >= beat
 
     def over(self, note: Note) -> Span | None:
         """A span over a note, if there is one."""

@@ -4,11 +4,15 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
 from itertools import accumulate, pairwise
+from typing import Any
+
+import numpy as np
 
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Span, Tempo, Written
+
+Array = Any
 
 # By ear.
 HELD, LONGEST_HELD = 1.8, 10.0  # times as long under a fermata, and at most
@@ -49,8 +53,6 @@ class WrittenClock:
         self._seconds = [0.0]
         for (beat, after), rate in zip(pairwise(self._beats), self._rates, strict=False):
             self._seconds.append(self._seconds[-1] + (after - beat) * rate)
-        # The same beats are asked for again and again, those of a note and of the next.
-        self.seconds = lru_cache(maxsize=1 << 10)(self._seconds_at)
 
     def _stretched(self, rates: list[float], stretches: list[Stretch]) -> list[float]:
         changed = list(rates)
@@ -63,11 +65,23 @@ class WrittenClock:
                 changed[at] = max(changed[at], rates[at] * each.factor + more)
         return changed
 
-    def _seconds_at(self, beat: Fraction | float) -> float:
+    def seconds(self, beat: Fraction | float) -> float:
         """Seconds at a beat."""
         exact = float(beat)
         at = self._at(exact)
         return self._seconds[at] + (exact - self._beats[at]) * self._rates[at]
+
+    def seconds_of(self, beats: Array) -> Array:
+        """Seconds at beats [shape=(beats,)]."""
+        since, seconds, rates = map(np.array, (self._beats, self._seconds, self._rates))
+        at = np.maximum(np.searchsorted(since, beats, side="right") - 1, 0)
+        return seconds[at] + (beats - since[at]) * rates[at]
+
+    def beats_at(self, seconds: Array) -> Array:
+        """The beats at seconds [shape=(seconds,)]."""
+        since, beats, rates = map(np.array, (self._seconds, self._beats, self._rates))
+        at = np.maximum(np.searchsorted(since, seconds, side="right") - 1, 0)
+        return beats[at] + (seconds - since[at]) / rates[at]
 
     def beat_at(self, seconds: float) -> float:
         """The beat at so many seconds."""

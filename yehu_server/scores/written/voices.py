@@ -7,7 +7,7 @@ of them. In voices ties are joined, spans closed and repeats unfolded.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from yehu_server.scores.written import notated
@@ -96,7 +96,8 @@ class Voice:
 
     def _grace(self, raw: RawNote, begin: Fraction) -> None:
         grace = Grace(raw.pitch, raw.length, _marks(raw))
-        self._ends(raw, begin + raw.at)
+        if raw.ends:
+            self._ends(raw, begin + raw.at)
         if raw.is_after and self.notes:
             self._after([grace])
         else:
@@ -104,7 +105,7 @@ class Voice:
 
     def _after(self, graces: list[Grace]) -> None:
         last = self.notes[-1]
-        self.notes[-1] = replace(last, after=(*last.after, *graces))
+        self.notes[-1] = last._replace(after=(*last.after, *graces))
 
     def _note(self, raw: RawNote, begin: Fraction) -> None:
         beat = begin + raw.at
@@ -146,7 +147,7 @@ class Voice:
             if self._tied.get(last.pitch) == len(self.notes):
                 del self._tied[last.pitch]
             if last.beat < beat:
-                self.notes.append(replace(last, length=beat - last.beat))
+                self.notes.append(last._replace(length=beat - last.beat))
 
     def _ends(self, raw: RawNote, beat: Fraction) -> None:
         """Begin and end the spans of a note; those that end, first."""
@@ -174,7 +175,7 @@ class Voice:
             if note.beat <= begin:
                 break
             if note.marked("vibrato") is None:
-                self.notes[at] = replace(note, marks=(*note.marks, Mark("vibrato")))
+                self.notes[at] = note._replace(marks=(*note.marks, Mark("vibrato")))
 
     def _two_note_tremolo(self, raw: RawNote) -> None:
         """Two notes in quick turns: each trills with the other, on one bow."""
@@ -184,8 +185,8 @@ class Voice:
         if one.end != other.beat or one.pitch == other.pitch:
             return
         step = other.pitch - one.pitch
-        self.notes[-2] = replace(one, marks=(*one.marks, Mark("trill", step)))
-        self.notes[-1] = replace(other, marks=(*other.marks, Mark("trill", -step)))
+        self.notes[-2] = one._replace(marks=(*one.marks, Mark("trill", step)))
+        self.notes[-1] = other._replace(marks=(*other.marks, Mark("trill", -step)))
         self.spans.append(Span("slur", one.beat, other.beat))
 
 

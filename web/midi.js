@@ -61,8 +61,13 @@ export class Midi extends EventTarget {
   }
 
   #listen() {
-    if (!this.inputs.some(({ id }) => id === this.chosen)) this.chosen = ALL;
-    for (const input of this.#access?.inputs.values() ?? []) this.#hear(input);
+    const { inputs } = this;
+    if (!inputs.some(({ id }) => id === this.chosen)) this.chosen = ALL;
+    // Browsers list inputs that were pulled out as disconnected, or no longer.
+    this.#ports.forEach((own, port) => {
+      if (!inputs.some(({ id }) => id === own)) this.instrument.player.endPortNotes(port);
+    });
+    inputs.forEach((input) => this.#hear(input));
     this.dispatchEvent(new Event("change"));
   }
 
@@ -70,7 +75,6 @@ export class Midi extends EventTarget {
   #hear(input) {
     if (!this.#ports.includes(input.id)) this.#ports.push(input.id);
     const port = this.#ports.indexOf(input.id);
-    if (input.state === "disconnected") this.instrument.player.endPortNotes(port);
     input.onmidimessage = ({ data }) => {
       if (!data || !this.#isHeard(input.id)) return;
       this.taught.hear(data, port);

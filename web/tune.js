@@ -25,7 +25,8 @@ const COUNT_IN = 2; // s before the first note
 
 /** A tune that is on. Events: 'move' as it goes on, and 'end'. */
 class Course extends EventTarget {
-  #habits = { shakes: false, string: NaN };
+  /** @type {ReturnType<typeof habitsOf> | null} */
+  #habits = null;
   /** @type {import('./hands/fingering.js').Fingered[]} */
   #fingering = [];
 
@@ -64,8 +65,8 @@ class Course extends EventTarget {
   /** What the player does with the notes, as it plays now. */
   get fingering() {
     const habits = habitsOf(this.instrument.player);
-    const { shakes, string } = this.#habits;
-    if (habits.shakes !== shakes || habits.string !== string)
+    const { shakes, string, own } = this.#habits ?? {};
+    if (habits.shakes !== shakes || habits.string !== string || habits.own !== own)
       [this.#habits, this.#fingering] = [habits, fingered(this.notes, habits, this.pace)];
     return this.#fingering;
   }

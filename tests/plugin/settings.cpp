@@ -9,6 +9,9 @@ int main(int count, char **words) {
     char text[64];
     for (int i = 1; i + 1 < count; i += 2)
         settings.change(yehu::parameter_of((uint32_t)strtoul(words[i], nullptr, 10)), atof(words[i + 1]), [](int, bool) {});
-    settings.describe(text, sizeof text);
-    printf("%s|%d|%d|%g\n", text, settings.preset(), settings.is_changed(), settings.usual(yehu::VIBRATO));
+    for (int set = 0; set < yehu::SETS; set++) {
+        settings.write(set, settings.value(set), text, sizeof text);
+        printf("%s|%d|", text, settings.chosen(set));
+    }
+    printf("%g|%g\n", settings.usual(yehu::VIBRATO), settings.usual(yehu::ROOM_LEVEL));
 }

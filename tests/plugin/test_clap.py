@@ -54,14 +54,15 @@ def test_keys_that_choose_articulations_have_names(play, shown):
 
 
 def test_a_preset_moves_what_it_names_and_reports_it(play, shown):
-    hall = shown["/preset"].choices.index("hall")
-    _, reports = play([*PLAYS, f"100 set {shown['/preset'].number} {hall}"], 2000)
+    hall = shown["/room"].choices.index("hall")
+    _, reports = play([*PLAYS, f"100 set {shown['/room'].number} {hall}"], 2000)
     moved = {int(number): value for number, value in reports["moved"]}
     preset = Presets(user_first=False).find("hall").values
     assert moved[shown["/room/size"].number] == preset["/room/size"]
     values = {int(number): value for number, value, _ in reports["value"]}
     assert values[shown["/room/decay"].number] == preset["/room/decay"]
     assert values[shown["/playing/speed"].number] == shown["/playing/speed"].default
+    assert values[shown["/preset"].number] == shown["/preset"].default
 
 
 def test_an_old_value_that_comes_again_does_not_undo_a_preset(play, shown):

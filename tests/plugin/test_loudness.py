@@ -14,7 +14,7 @@ KEYS = {note_name(key): key for key in range(65, 90)}
 
 @pytest.mark.parametrize("preset", ["vibrato", "pizzicato", "sul-tasto", "hall"])
 def test_a_phrase_is_as_loud_as_rendered(play, shown, preset):
-    choice = shown["/preset"].choices.index(preset)
+    chosen = shown["/room" if preset in shown["/room"].choices else "/preset"]
     messages = [
         (round((0.1 + begin + shift) * RATE), status, KEYS[name], VELOCITY)
         for name, begin, length in zip(NAMES, BEGINS, LENGTHS, strict=False)
@@ -22,7 +22,7 @@ def test_a_phrase_is_as_loud_as_rendered(play, shown, preset):
     ]
     # Ends before begins, where one note ends as the next begins.
     messages.sort(key=lambda message: (message[0], message[1]))
-    lines = [f"0 set {shown['/preset'].number} {choice}", *script(messages)]
+    lines = [f"0 set {chosen.number} {chosen.choices.index(preset)}", *script(messages)]
     samples, _ = play(lines, round((BEGINS[-1] + 1.5) * RATE), rate=RATE)
     made = yehu.render(phrase(), preset=preset, phrasing=0.0, sample_rate=RATE)
     loudness = check(samples, RATE)

@@ -21,17 +21,19 @@ from yehu_server.util.files import shipped_folder
 
 HERE = Path(__file__).parent
 NUMBERS = dict(line.split() for line in (HERE / "numbers.txt").read_text().splitlines())
-CHOICES = ("/preset", "/mapping", "/tuning", "/chance")
+CHOICES = ("/preset", "/room", "/mapping", "/tuning", "/chance")
 
 
 def test_numbers_and_order_of_choices_are_for_ever(shown):
     assert {address: str(each.number) for address, each in shown.items()} == NUMBERS, (
         "hosts keep automation by these numbers: add new ones to numbers.txt, and change none"
     )
-    assert shown["/preset"].choices[:13] == (
+    assert shown["/preset"].choices[:9] == (
         *("none", "ordinary", "vibrato", "flautando", "sul-tasto", "sul-ponticello", "tremolo"),
-        *("pizzicato", "scratch", "dry", "study", "courtyard", "hall"),
+        *("pizzicato", "scratch"),
     )
+    kept = ("custom", "dry", "study", "courtyard", "hall", "chamber")
+    assert shown["/room"].choices[:6] == kept
     kept = ("keyboard", "keyboard-expressive", "mpe", "sustain-pedal-tremolo", "wind")
     assert shown["/mapping"].choices[:5] == kept
     assert shown["/tuning"].choices[:2] == ("equal", "chaozhou-seven-equal")
@@ -67,8 +69,9 @@ def test_what_has_few_values_is_a_list_of_their_names(shown):
 def test_it_begins_as_the_page_and_the_server(shown):
     preset = shown["/preset"]
     assert preset.choices[int(preset.default)] == FIRST_LIVE
+    room = shown["/room"].choices[int(shown["/room"].default)]
     page = (HERE.parents[1] / "web" / "views" / "sounds.js").read_text(encoding="utf-8")
-    assert f'AT_FIRST = isServed ? [] : ["{FIRST_LIVE}", ' in page
+    assert f'AT_FIRST = isServed ? [] : ["{FIRST_LIVE}", "{room}"];' in page
 
 
 def test_names_numbers_and_symbols_are_of_one_parameter_each(shown):

@@ -72,7 +72,7 @@ def test_on_windows_a_screen_reader_hears_what_has_the_focus_and_its_value(
     program = compiled(tmp_path, SYSTEMS[2], "windows_window.c", "-luser32")
     plugin, number = everywhere / "windows" / "Yehu.clap", shown["/playing/vibrato"].number
     done = subprocess.run(
-        [WINE, str(program), str(plugin), "ptttt41r9e", str(number)],
+        [WINE, str(program), str(plugin), "pttttt41r9e", str(number)],
         env={**environment(tmp_path), "DISPLAY": display},
         capture_output=True,
         text=True,
@@ -80,9 +80,9 @@ def test_on_windows_a_screen_reader_hears_what_has_the_focus_and_its_value(
     )
     chosen, *names, value = done.stdout.splitlines()
     assert chosen == "Preset: pizzicato"
-    words = ("Articulation: ordinary", "Mapping: keyboard", "Tuning: equal")
-    assert tuple(names[:3]) == words
-    assert names[4:] == [f"Vibrato: {word}" for word in ("4", "41", "41 cents", "9", "41 cents")]
+    words = ("Room: chamber", "Articulation: ordinary", "Mapping: keyboard", "Tuning: equal")
+    assert tuple(names[:4]) == words
+    assert names[5:] == [f"Vibrato: {word}" for word in ("4", "41", "41 cents", "9", "41 cents")]
     assert float(value) == 41.0
 
 

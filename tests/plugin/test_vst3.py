@@ -99,9 +99,8 @@ def test_a_host_with_a_table_of_its_own_does_not_undo_a_preset(built, shown):
 def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, shown):
     import pedalboard
 
-    choices = shown["/preset"].choices
-    hall = choices.index("hall") / (len(choices) - 1)
-    wanted = {"Output gain": 0.25, "Preset": hall, "Mapping": 1.0}
+    hall = shown["/room"].choices.index("hall") / shown["/room"].steps
+    wanted = {"Output gain": 0.25, "Room": hall, "Mapping": 1.0}
     for name, unit in wanted.items():
         raw(plugin, name).raw_value = unit
     quiet = played(plugin)
@@ -111,7 +110,8 @@ def test_parameters_presets_and_state_open_in_a_new_instance(plugin, built, show
     other.raw_state = plugin.raw_state
     for name, unit in wanted.items():
         assert raw(other, name).raw_value == pytest.approx(unit, abs=1e-6)
-    assert raw(other, "Room size").string_value == "25 m"  # by the preset, which is a hall
+    assert raw(other, "Room size").string_value == "25 m"
+    assert [raw(other, name).string_value for name in ("Preset", "Room")] == ["vibrato", "hall"]
     assert raw(other, "Mapping").string_value == shown["/mapping"].choices[-1]
     assert level_db(played(other)) == pytest.approx(level_db(quiet), abs=0.5)
 

@@ -16,8 +16,8 @@ def controller(built):
 
 
 def test_what_a_preset_moves_is_to_be_read_again(controller, shown):
-    preset, plucks, decay = (
-        shown[name] for name in ("/preset", "/playing/pizzicato", "/room/decay")
+    preset, room, plucks, decay = (
+        shown[name] for name in ("/preset", "/room", "/playing/pizzicato", "/room/decay")
     )
     choice = preset.choices.index("pizzicato") / preset.steps
     before = controller.get(decay.number)
@@ -26,10 +26,13 @@ def test_what_a_preset_moves_is_to_be_read_again(controller, shown):
     assert controller.get(plucks.number) == 1.0
     assert controller.get(decay.number) == before
     controller.set(preset.number, choice)  # again: nothing new
-    controller.set(decay.number, 0.5)  # of a room
     assert controller.host.heard == [("restart", VALUES)]
-    controller.set(plucks.number, 0.0)
+    controller.set(decay.number, 0.5)  # of the room
     assert controller.host.heard == 2 * [("restart", VALUES)]
+    assert controller.text(room.number, controller.get(room.number)) == "chamber, changed"
+    assert controller.get(preset.number) == pytest.approx(choice)
+    controller.set(plucks.number, 0.0)
+    assert controller.host.heard == 3 * [("restart", VALUES)]
     assert controller.get(preset.number) == 0.0
     assert controller.text(preset.number, 0.0) == "pizzicato, changed"
     controller.set(plucks.number, 1.0)

@@ -7,7 +7,7 @@ import facts from "../facts.js";
 import { transposed } from "../playing/table.js";
 import { OPEN, fingerOf } from "./scale.js";
 
-const { OPEN_WITHIN, HIGHEST, SLOW_FROM_S, LEAST_PRESS } = facts.notes;
+const { OPEN_WITHIN, HIGHEST, SLOW_FROM_S, LEAST_PRESS, NODES } = facts.notes;
 const ON_OPEN = -1; // place of a finger that is up
 const NOTE_ON = 0x90;
 const NOTE_OFF = 0x80;
@@ -32,24 +32,53 @@ export function habitsOf(player) {
   const presses = player.value("/playing/vibrato_press") >= LEAST_PRESS;
   const isPlucked = player.value("/playing/pizzicato") >= 0.5;
   const string = Math.round(player.value("/playing/string")) - 1;
-  return { shakes: (rocks || presses) && !isPlucked, string };
+  const number = Math.round(player.value("/playing/articulation"));
+  const own = facts.articulations[number] ?? facts.articulations[0];
+  const isStill = isPlucked || own.isPlucked || own.beats;
+  return { shakes: !isStill && (own.shakes ?? (rocks || presses)), string, own };
 }
 
 /**
  * The fingering of notes, one after another.
  * @param {Note[]} notes
- * @param {ReturnType<typeof habitsOf>} habits `string`: that is asked for; -1: either
+ * @param {ReturnType<typeof habitsOf>} habits `string`: that is asked for; -1: either; `own`: articulation
  * @param {number} pace
  * @returns {Fingered[]}
  */
-export function fingered(notes, { shakes, string: asked }, pace) {
+export function fingered(notes, habits, pace) {
   let [string, place] = [-1, ON_OPEN];
   return notes.map(({ at, pitch }, i) => {
     const isSlow = i === 0 || at - notes[i - 1].at >= SLOW_FROM_S * pace;
-    [string, place] = choose(pitch, asked, shakes && isSlow, string, place);
+    [string, place] = sliding(pitch, habits, isSlow, string, place);
     const own = /** @type {0 | 1} */ (string);
     return { string: own, finger: place === ON_OPEN ? 0 : fingerOf(pitch, own) };
   });
+}
+
+const placeOf = (/** @type {number} */ pitch, /** @type {number} */ string) =>
+  1 - 2 ** ((OPEN[string] - pitch) / 12);
+
+/**
+ * As `choose`, of an articulation: where a finger slides, on the string that has all of the slide, or touches a node.
+ * @param {number} pitch
+ * @param {ReturnType<typeof habitsOf>} habits
+ * @param {boolean} isSlow
+ * @param {number} string
+ * @param {number} place
+ * @returns {[number, number]}
+ */
+function sliding(pitch, { shakes, string: asked, own }, isSlow, string, place) {
+  const touched = own.touches
+    ? NODES.findIndex(([on, above]) => OPEN[on] + above === pitch && [-1, on].includes(asked))
+    : -1;
+  if (touched >= 0) return [NODES[touched][0], placeOf(pitch, NODES[touched][0])];
+  const [low, high] = own.reach.map((far) => pitch + far);
+  if (low === high) return choose(pitch, asked, shakes && isSlow, own.beats, string, place);
+  const isOpen = pitch < OPEN[0] + OPEN_WITHIN;
+  if (low < OPEN[1] + OPEN_WITHIN && high <= HIGHEST[0] && asked !== 1)
+    return [0, isOpen ? ON_OPEN : placeOf(pitch, 0)];
+  if (low > OPEN[1] && asked !== 0) return [1, placeOf(pitch, 1)];
+  return choose(pitch, asked, false, false, string, place);
 }
 
 /**
@@ -57,17 +86,18 @@ export function fingered(notes, { shakes, string: asked }, pace) {
  * @param {number} pitch
  * @param {number} asked the string that is asked for
  * @param {boolean} shakes an open string is stopped on the other
+ * @param {boolean} beats another finger, for which the inner string is too short
  * @param {number} string
  * @param {number} place
  * @returns {[number, number]}
  */
-function choose(pitch, asked, shakes, string, place) {
-  const on = (/** @type {number} */ one) => 1 - 2 ** ((OPEN[one] - pitch) / 12);
+function choose(pitch, asked, shakes, beats, string, place) {
+  const on = (/** @type {number} */ one) => placeOf(pitch, one);
   if (pitch < OPEN[0] + OPEN_WITHIN) return [0, ON_OPEN];
   if (asked === 0) return [0, on(0)];
   if (Math.abs(pitch - OPEN[1]) < OPEN_WITHIN && (asked === 1 || !shakes)) return [1, ON_OPEN];
   if (pitch < OPEN[1] + OPEN_WITHIN) return [0, on(0)];
-  const isFar = asked === 1 || string !== 0 || place === ON_OPEN || pitch > HIGHEST[0];
+  const isFar = asked === 1 || string !== 0 || place === ON_OPEN || beats || pitch > HIGHEST[0];
   const isNearer = !isFar && Math.abs(on(0) - place) < Math.abs(on(1) - place);
   return isNearer ? [0, on(0)] : [1, on(1)];
 }

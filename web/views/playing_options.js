@@ -45,7 +45,7 @@ export function showPlayingOptions({ instrument: { player }, hands, fingerboard 
  * @param {import('../interfaces.js').Player} player
  */
 function articulations(player) {
-  const options = facts.articulations.map(([name, chinese], number) => {
+  const options = facts.articulations.map(({ name, chinese }, number) => {
     const english = name.replaceAll("-", " ");
     return make("option", { value: String(number) }, [
       () => (language() === "zh" ? chinese : `${english} ${chinese}`),

@@ -52,7 +52,7 @@ def put_lv2(folder: Path, libraries: Mapping[System, Path]) -> Path:
     system = next(iter(libraries))
     ending = system.ending
     (path / f"{NAME}{ending}").write_bytes(_joined(libraries))
-    (path / "manifest.ttl").write_text(manifest(f"{NAME}{ending}", data.presets, system.lv2_window))
+    (path / "manifest.ttl").write_text(manifest(f"{NAME}{ending}", data, system.lv2_window))
     (path / f"{NAME}.ttl").write_text(plugin_text(shown))
     (path / "presets.ttl").write_text(presets_text(shown, data))
     return path

@@ -18,7 +18,7 @@ from yehu_server.util.files import shipped_folder
 
 Array = Any
 OF_TUNING = ("is_equal", "pitch")
-NO_PRESET = "none"
+NO_PRESET, NO_ROOM = "none", "custom"
 # Hosts keep the number of a choice: new ones come last. (Presets have numbers: their programs.)
 MAPPINGS = (
     DEFAULT, "keyboard-expressive", "mpe", "sustain-pedal-tremolo", "wind", "keyboard-bow-speed",
@@ -30,18 +30,19 @@ MAPPINGS = (
 class Carried:
     """Values by address, and runs of words of tables (``ahead.memory_images``), by name."""
 
-    # Values of parameters by address: of each preset, and those that each mapping starts with.
+    # Values of parameters by address: of each preset of a sound and of a room, and those that each
+    # mapping starts with.
     presets: dict[str, dict[str, float]]
-    rooms: frozenset[str]  # the presets of rooms
+    rooms: dict[str, dict[str, float]]
     mappings: dict[str, Array]  # runs of words of ``midi.tables``
     starts: dict[str, dict[str, float]]
     switches: dict[str, int]  # of each mapping: the first key that chooses an articulation; or -1
     tunings: dict[str, Array]  # the same, for the fields OF_TUNING
 
     @cached_property
-    def names(self) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
-        """The names of presets, mappings and tunings."""
-        return tuple(self.presets), tuple(self.mappings), tuple(self.tunings)
+    def names(self) -> tuple[tuple[str, ...], ...]:
+        """The names of presets, rooms, mappings and tunings."""
+        return tuple(map(tuple, (self.presets, self.rooms, self.mappings, self.tunings)))
 
 
 def carried() -> Carried:
@@ -50,8 +51,8 @@ def carried() -> Carried:
     loaded = {name: load(name) for name in (*MAPPINGS, *files)}
     presets = [preset for _, preset in sorted(Presets(user_first=False).programs().items())]
     return Carried(
-        {NO_PRESET: {}} | {preset.name: dict(preset.values) for preset in presets},
-        frozenset(preset.name for preset in presets if preset.is_room),
+        {NO_PRESET: {}} | {each.name: dict(each.values) for each in presets if not each.is_room},
+        {NO_ROOM: {}} | {each.name: dict(each.values) for each in presets if each.is_room},
         {name: _runs(PlayingOptions(mapping=mapping)) for name, mapping in loaded.items()},
         {
             name: {address: find(address).clamped(value) for address, value in mapping.start}

@@ -11,6 +11,7 @@ from yehu_server.plugin.parameters import (
     CHANCE,
     MAPPING,
     PRESET,
+    ROOM,
     TUNING,
     HostParameter,
 )
@@ -85,8 +86,8 @@ static const Parameter parameters[] = {{
 {parameters}
 }};
 enum {{ PARAMETERS = {count} }};
-enum {{ NO_PRESET = 0 }}; /* a value of PRESET */
-enum {{ PRESET = {preset}, MAPPING = {mapping}, TUNING = {tuning}, CHANCE = {chance} }};
+enum {{ PRESET = {preset}, ROOM = {room}, SETS }}; /* which set others; a value 0 is none of them */
+enum {{ MAPPING = {mapping}, TUNING = {tuning}, CHANCE = {chance} }};
 enum {{ ARTICULATION = {articulation}, ARTICULATIONS = {articulations} }};
 /* Of each mapping the key that chooses the first articulation, others upwards; or -1. */
 static const int16_t first_switches[] = {{{switches}}};
@@ -101,7 +102,7 @@ static const Expression expressions[] = {{
 enum {{ EXPRESSIONS = {expression_count} }};
 
 {values}
-static const bool is_room[] = {{{rooms}}}; /* of each preset */
+static const Values *const sets[] = {{presets, rooms}};
 
 {tables}
 
@@ -126,6 +127,7 @@ def header(shown: Sequence[HostParameter], data: Carried) -> str:
         parameters="\n".join(_parameter(index, each) for index, each in enumerate(shown)),
         count=len(shown),
         preset=place[PRESET],
+        room=place[ROOM],
         mapping=place[MAPPING],
         tuning=place[TUNING],
         chance=place[CHANCE],
@@ -140,9 +142,12 @@ def header(shown: Sequence[HostParameter], data: Carried) -> str:
         expression_count=len(EXPRESSIONS),
         values="\n\n".join(
             "\n".join(_values(name, sets, place))
-            for name, sets in (("presets", data.presets), ("starts", data.starts))
+            for name, sets in (
+                ("presets", data.presets),
+                ("rooms", data.rooms),
+                ("starts", data.starts),
+            )
         ),
-        rooms=", ".join(str(name in data.rooms).lower() for name in data.presets),
         tables="\n\n".join(
             "\n".join(_runs(name, sets))
             for name, sets in (("mappings", data.mappings), ("tunings", data.tunings))

@@ -3,9 +3,9 @@
 import json
 from collections.abc import Iterable, Sequence
 
-from yehu_server.plugin.carried import NO_PRESET, Carried
+from yehu_server.plugin.carried import Carried
 from yehu_server.plugin.header import LV2_URI
-from yehu_server.plugin.parameters import PRESET, HostParameter
+from yehu_server.plugin.parameters import PRESET, ROOM, HostParameter
 from yehu_server.util import __version__
 
 PREFIXES = """\
@@ -86,11 +86,11 @@ UNITS = {
 
 
 def in_lv2(shown: Iterable[HostParameter]) -> list[HostParameter]:
-    """The parameters that are ports: but for the preset, as LV2 has presets of its own."""
-    return [each for each in shown if each.address != PRESET]
+    """The parameters that are ports: but for preset and room, as LV2 has presets of its own."""
+    return [each for each in shown if each.address not in (PRESET, ROOM)]
 
 
-def manifest(library: str, presets: Iterable[str], window: str = "") -> str:
+def manifest(library: str, data: Carried, window: str = "") -> str:
     """Write manifest.ttl, for the library, presets and kind of window (of LV2's) of the bundle."""
     about = f"a lv2:Plugin ;\n    lv2:binary <{library}> ;\n    rdfs:seeAlso <Yehu.ttl>"
     about += f" ;\n    ui:ui <{LV2_URI}#window> .\n" if window else " .\n"
@@ -99,9 +99,8 @@ def manifest(library: str, presets: Iterable[str], window: str = "") -> str:
         texts.append(WINDOW.format(uri=LV2_URI, kind=window, library=library))
     texts += [
         f"<{_preset(name)}>\n    a pset:Preset ;\n    lv2:appliesTo <{LV2_URI}> ;\n"
-        f"    rdfs:label {_text(name)} ;\n    rdfs:seeAlso <presets.ttl> .\n"
-        for name in presets
-        if name != NO_PRESET
+        f"    rdfs:label {_text(label)} ;\n    rdfs:seeAlso <presets.ttl> .\n"
+        for name, label in _labels(data).items()
     ]
     return "\n".join([PREFIXES, *texts])
 
@@ -129,14 +128,19 @@ def presets_text(shown: Iterable[HostParameter], data: Carried) -> str:
     """Write the presets, each with the ports it sets."""
     symbols = {each.address: each.symbol for each in shown}
     texts = []
-    for name, values in data.presets.items():
-        if name != NO_PRESET:
-            ports = " , ".join(
-                f'[\n        lv2:symbol "{symbols[address]}" ; pset:value {value:.9g}\n    ]'
-                for address, value in values.items()
-            )
-            texts.append(f"<{_preset(name)}>\n    a pset:Preset ;\n    lv2:port {ports} .\n")
+    for name in _labels(data):
+        ports = " , ".join(
+            f'[\n        lv2:symbol "{symbols[address]}" ; pset:value {value:.9g}\n    ]'
+            for address, value in (data.presets | data.rooms)[name].items()
+        )
+        texts.append(f"<{_preset(name)}>\n    a pset:Preset ;\n    lv2:port {ports} .\n")
     return "\n".join([PREFIXES, *texts])
+
+
+def _labels(data: Carried) -> dict[str, str]:
+    """What hosts call each preset in their one list, which shows the one that was chosen last."""
+    sounds = {name: name for name, values in data.presets.items() if values}
+    return sounds | {name: f"{name} (room)" for name, values in data.rooms.items() if values}
 
 
 def _port(index: int, each: HostParameter) -> str:

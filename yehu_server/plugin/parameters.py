@@ -19,7 +19,8 @@ LEFT_OUT = {"/playing/section"}
 HANDS = ("bow", "finger", "vibrato", "pluck")
 # Numbers below are for controllers of MIDI, where a format has them as parameters.
 MIN_NUMBER, NUMBERS = 1 << 30, (1 << 30) - 1
-PRESET, MAPPING, TUNING, CHANCE = "/preset", "/mapping", "/tuning", "/chance"
+PRESET, ROOM, MAPPING, TUNING = "/preset", "/room", "/mapping", "/tuning"
+CHANCE = "/chance"
 CHANCES = ("goes on", "begins with the transport")
 
 
@@ -58,9 +59,9 @@ ARTICULATION = "/playing/articulation"
 def parameters(data: Carried) -> list[HostParameter]:
     """List all parameters: the choices first, then those of the table, what one plays by before.
 
-    It begins with the preset of live playing, and with the first mapping and tuning.
+    It begins with the preset and room of live playing, and with the first mapping and tuning.
     """
-    presets, mappings, tunings = data.names
+    presets, rooms, mappings, tunings = data.names
     choices = [
         _choice(
             PRESET,
@@ -68,6 +69,13 @@ def parameters(data: Carried) -> list[HostParameter]:
             presets,
             "Sets the parameters that the preset names; none, as soon as one of them is changed.",
             default=presets.index(FIRST_LIVE),
+        ),
+        _choice(
+            ROOM,
+            "Room",
+            rooms,
+            "Sets the parameters of a room; custom, as soon as one of them is changed.",
+            default=rooms.index(_usual_room(data)),
         ),
         _choice(MAPPING, "Mapping", mappings, "What keys and controllers of MIDI move."),
         _choice(TUNING, "Tuning", tunings, "The pitch of each key."),
@@ -83,6 +91,13 @@ def parameters(data: Carried) -> list[HostParameter]:
     first = data.presets[FIRST_LIVE]
     rows = [_of_table(param, first) for param in TABLE if param.address not in LEFT_OUT]
     return choices + sorted(rows, key=lambda param: param.group != "Playing")
+
+
+def _usual_room(data: Carried) -> str:
+    """The room whose values are those of the table."""
+    usual = {param.address: param.default for param in TABLE}
+    named = ((name, values) for name, values in data.rooms.items() if values)
+    return next(name for name, values in named if values.items() <= usual.items())
 
 
 def _choice(

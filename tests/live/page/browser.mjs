@@ -36,9 +36,14 @@ export const SIZES = {
  * A Chromium without a window.
  * @param {string} program
  * @param {string[]} flags
+ * @param {Record<string, string>} environment
  */
-export const launch = (program, flags = []) =>
-  chromium.launch({ executablePath: program, args: [...FLAGS, ...flags] });
+export const launch = (program, flags = [], environment = {}) =>
+  chromium.launch({
+    executablePath: program,
+    args: [...FLAGS, ...flags],
+    env: { ...process.env, ...environment },
+  });
 
 /**
  * A context that remembers nothing.
@@ -83,6 +88,7 @@ export function pretendMidi() {
   const access = { inputs: new Map([["one", input]]), onstatechange: null };
   const pull = () => {
     input.state = "disconnected";
+    access.inputs.clear(); // as Chromium has it
     access.onstatechange();
   };
   Object.assign(globalThis, { pretended: { input, pull } });

@@ -10,8 +10,8 @@
  * {"failed": TEXT}. Nothing is remembered from one scenario to the next.
  *
  * A scenario exports a function as its default, which gets a browser's context and the URL, and may export
- * `flags` for a browser of its own, `hasTabs` if that has to be CHROMIUM, whose tabs take the focus from each
- * other, and `isDrawnInFull` if frames are to come as fast as they can.
+ * `flags` for a browser of its own, and its `environment`, `hasTabs` if that has to be CHROMIUM, whose tabs take
+ * the focus from each other, and `isDrawnInFull` if frames are to come as fast as they can.
  */
 
 import { createInterface } from "node:readline";
@@ -33,11 +33,13 @@ async function play(shared, { scenario, url, words }) {
   const {
     default: run,
     flags,
+    environment,
     hasTabs,
     isDrawnInFull,
   } = await import(pathToFileURL(scenario).href);
-  const isOwn = flags || hasTabs;
-  const browser = isOwn ? await launch(hasTabs ? chromium : shell, flags?.(words)) : shared;
+  const isOwn = flags || environment || hasTabs;
+  const program = hasTabs ? chromium : shell;
+  const browser = isOwn ? await launch(program, flags?.(words), environment?.(words)) : shared;
   const context = await contextOf(browser);
   try {
     if (!isDrawnInFull) await context.addInitScript(drawSeldom);

@@ -2,14 +2,14 @@
  * Plays tunes on the page's instrument, and prints the string and finger that are printed of each note beside
  * those that are seen on the strings.
  *
- * The arguments: the page's folder, presets and tunes.
+ * The arguments: the page's folder, presets, tunes, and articulations.
  */
 
 import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { resolve } from "node:path";
 
-const [folder, presets, tunes] = process.argv.slice(2);
+const [folder, presets, tunes, articulations] = process.argv.slice(2);
 const web = pathToFileURL(`${resolve(folder)}/`);
 const load = (/** @type {string} */ name) => import(new URL(name, web).href);
 globalThis.document = /** @type {any} */ ({ querySelector: () => null });
@@ -38,12 +38,14 @@ function seenOf(state) {
   return [string, stop === 0 ? 0 : fingerOf(pitch, string)];
 }
 
-async function play(preset, tune) {
+async function play(preset, tune, articulation) {
   const kernel = new Kernel(module, RATE, BLOCK, facts.snapshotLength);
   const post = (frame, ...fields) => kernel.post(frame ?? kernel.frame, ...fields);
   const player = new Player({ post, rate: RATE });
   player.playBy(await Interpreter.open(bytes));
   player.applyPreset(preset);
+  const number = facts.articulations.findIndex(({ name }) => name === articulation);
+  player.write("/playing/articulation", number);
   player.remap(MAPPINGS[tune.mapping]);
   const { notes, fingering } = new TunePlayer({ player }, tune, 1);
   const events = tune.events.filter(([at]) => at < SECONDS);
@@ -60,6 +62,7 @@ async function play(preset, tune) {
 const found = {};
 for (const preset of presets.split(",")) {
   for (const name of tunes.split(","))
-    found[`${preset} ${name}`] = await play(preset, examples[name]);
+    for (const articulation of articulations.split(","))
+      found[`${preset} ${name} ${articulation}`] = await play(preset, examples[name], articulation);
 }
 console.log(JSON.stringify(found));

@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 
+from yehu_server.params.articulations import ARTICULATIONS
+
 EASY = {"twinkle", "frere_jacques", "au_clair_de_la_lune"}
 STUDIES = {"slow_air", "bow_pressure", "mpe_phrase"}
 
@@ -50,14 +52,16 @@ def test_the_strings_and_fingers_that_are_printed_are_those_that_play(
     run_node, playing, subtests, everything
 ):
     presets, tunes = "vibrato,ordinary", "twinkle"
+    articulations = "ordinary,straight,rolling-vibrato,flageolet"
     if everything:
         presets, tunes = f"{presets},pizzicato", f"{tunes},frere_jacques,silent_night"
-    played = json.loads(run_node("fingering.mjs", playing, presets, tunes))
+        articulations = ",".join(each.name for each in ARTICULATIONS)
+    played = json.loads(run_node("fingering.mjs", playing, presets, tunes, articulations))
     for name, notes in played.items():
         with subtests.test(name):
             assert len(notes) >= 5
             assert [note["printed"] for note in notes] == [note["seen"] for note in notes]
-    openly, stopped = ([note["printed"] for note in played[f"{each} twinkle"]]
+    openly, stopped = ([note["printed"] for note in played[f"{each} twinkle ordinary"]]
                        for each in ("ordinary", "vibrato"))  # fmt: skip
     assert openly[2] == [1, 0]  # C5 on its open string, or by the fourth finger
     assert stopped[2] == [0, 4]

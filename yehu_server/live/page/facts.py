@@ -13,7 +13,7 @@ from yehu_server.ahead.interpreter import interpreter_layout, snapshot_layout, s
 from yehu_server.core.midi import registered_parameters, tables
 from yehu_server.core.midi.events import EVENTS
 from yehu_server.core.midi.tables import MAX_BINDS, TABLES
-from yehu_server.core.player import fingering, vibrato
+from yehu_server.core.player import fingering, gestures, harmonics, vibrato
 from yehu_server.core.player.commands import KINDS
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.parameter_indices import INDEX
@@ -129,6 +129,7 @@ def facts(notes: NoteRange = YEHU) -> dict[str, Any]:
             "HIGHEST": list(map(float, notes.highest_notes)),
             "SLOW_FROM_S": vibrato.SLOW_FROM_S,
             "LEAST_PRESS": vibrato.LEAST_PRESS,
+            "NODES": harmonics.NODES[:, : harmonics.PARTS].tolist(),
             "KEYS": KEYS[-1] + 1,
             "ELSEWHERE": ELSEWHERE,
         },
@@ -154,7 +155,18 @@ def facts(notes: NoteRange = YEHU) -> dict[str, Any]:
         "interpreter": interpreter_layout(),
         "mappings": {name: mapping(load(name)) for name in shipped_mappings()},
         "defaultMapping": DEFAULT,
-        "articulations": [[row.name, row.chinese] for row in ARTICULATIONS],
+        "articulations": [
+            {
+                "name": row.name,
+                "chinese": row.chinese,
+                "shakes": row.vibrato and row.vibrato.cents > 0.0,
+                "isPlucked": row.is_plucked,
+                "beats": bool(gestures.BEATS[number]),
+                "reach": gestures.REACH[number].tolist(),
+                "touches": row.touches,
+            }
+            for number, row in enumerate(ARTICULATIONS)
+        ],
         "asItSings": AS_IT_SINGS,
         "presets": {"shipped": {one.name: preset(one) for one in shipped}, "saved": list(SAVED)},
         "tunings": {name: tuning(one) for name, one in shipped_tunings().items()},

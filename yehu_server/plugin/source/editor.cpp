@@ -18,7 +18,7 @@ constexpr uint32_t STRING_COLOURS[] = {INNER, OUTER};
 constexpr float LOOP_X = 34, BRIDGE_X = 420, LANES[] = {84, 116}, MIDDLE = 100;
 constexpr float PANEL_X = 512, PANEL_WIDTH = 156;
 constexpr float GAUGES_Y = 112, GAUGE_HEIGHT = 33;
-constexpr float CHOOSERS_X = 12, CHOOSER_STEP = 165, CHOOSER_WIDTH = 161, CHOOSERS_Y = 304, CHOOSER_HEIGHT = 40;
+constexpr float CHOOSERS_X[] = {12, 140, 252, 384, 536, 672}, CHOOSER_GAP = 4, CHOOSERS_Y = 304, CHOOSER_HEIGHT = 40;
 constexpr float ARROW = 20, ZOOM_X = 628, ZOOM_Y = 20;
 
 constexpr float SLIDERS_X = 24, SLIDER_STEP = 119, SLIDER_WIDTH = 105, SLIDERS_Y = 187, SLIDER_HEIGHT = 28, WORDS_HEIGHT = 14;
@@ -27,7 +27,7 @@ constexpr double WHEEL_STEP = 0.02;
 
 constexpr int SLID[] = {VIBRATO,      VIBRATO_RATE, VIBRATO_DELAY, GAIN,          DYNAMICS, PRESSURE_OF_BOW,
                         BOW_POSITION, BRILLIANCE,   ROOM_LEVEL,    ROOM_DISTANCE, ROOM_PAN, SWAY};
-constexpr int CHOSEN[] = {PRESET, ARTICULATION, MAPPING, TUNING};
+constexpr int CHOSEN[] = {PRESET, ROOM, ARTICULATION, MAPPING, TUNING};
 constexpr double MIN_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from one snapshot to the next */
 constexpr float SWING = 26, HAIR_LENGTH = 66;
 constexpr double SILENT = 1e-4, CERTAIN = 0.8, TWICE = 1.5; /* as the page has them */
@@ -44,6 +44,7 @@ const char *regime_of(const struct yehu_snapshot &seen, double most, uint32_t *c
     return seen.force > most ? "raucous" : slips ? "slips too often" : "not settled";
 }
 
+float chooser_width(int chooser) { return CHOOSERS_X[chooser + 1] - CHOOSERS_X[chooser] - CHOOSER_GAP; }
 float share_of(double value, double lo, double hi) { return (float)fmin(fmax((value - lo) / (hi - lo), 0.0), 1.0); }
 float force_share(double force) { return share_of(log10(fmax(force, 1e-9)), -2.0, 1.0); }
 } /* namespace */
@@ -76,9 +77,10 @@ void Editor::set_size(int width, int height) {
 /* -- what the user does ----------------------------------------------------------------------- */
 
 int Editor::chooser_at(float x, float y) const {
-    const float place = (x - CHOOSERS_X) / CHOOSER_STEP;
-    const bool is_inside = y >= CHOOSERS_Y && y < CHOOSERS_Y + CHOOSER_HEIGHT && place >= 0 && place < CHOOSERS;
-    return is_inside ? (int)place : -1;
+    if (y < CHOOSERS_Y || y >= CHOOSERS_Y + CHOOSER_HEIGHT) return -1;
+    for (int i = 0; i < CHOOSERS; i++)
+        if (x >= CHOOSERS_X[i] && x < CHOOSERS_X[i + 1] - CHOOSER_GAP) return i;
+    return -1;
 }
 
 void Editor::choose(int chooser, int choice) {
@@ -90,13 +92,12 @@ void Editor::choose(int chooser, int choice) {
 
 /* From which the arrows step: of presets the one that was chosen, also where it was changed. */
 int Editor::choice_of(int chooser) const {
-    return CHOSEN[chooser] == PRESET ? instrument.all().preset() : (int)instrument.value(CHOSEN[chooser]);
+    const int parameter = CHOSEN[chooser];
+    return parameter < SETS ? instrument.all().chosen(parameter) : (int)instrument.value(parameter);
 }
 
-/* Hosts have a name for each preset; here the sound and the room are named. */
 void Editor::write(int parameter, char *into, size_t size) const {
-    if (parameter == PRESET) instrument.all().describe(into, size);
-    else instrument.all().write(parameter, instrument.value(parameter), into, size);
+    instrument.all().write(parameter, instrument.value(parameter), into, size);
 }
 
 int Editor::slider_at(float x, float y) const {
@@ -129,10 +130,10 @@ void Editor::press(int px, int py) {
     else if (slider >= 0 && fmodf(y - SLIDERS_Y, SLIDER_HEIGHT) < WORDS_HEIGHT) focus_on(CHOOSERS + slider), begin_typing();
     else if (slider >= 0) held = slider, drag(px, py);
     else if (chooser >= 0) {
-        const float from = x - CHOOSERS_X - CHOOSER_STEP * (float)chooser;
-        const bool is_name = from > ARROW && from < CHOOSER_WIDTH - ARROW;
-        const bool restores = CHOSEN[chooser] == PRESET && is_name && instrument.all().is_changed();
-        turn(px, py, restores ? 0 : from < CHOOSER_WIDTH / 2 ? -1 : 1);
+        const float from = x - CHOOSERS_X[chooser], width = chooser_width(chooser);
+        const bool is_name = from > ARROW && from < width - ARROW;
+        const bool restores = is_name && CHOSEN[chooser] < SETS && instrument.all().is_changed(CHOSEN[chooser]);
+        turn(px, py, restores ? 0 : from < width / 2 ? -1 : 1);
     } else if (y < 2 * ZOOM_Y && x > ZOOM_X - 12) zoom(wide >= 2 * WIDTH ? -1000 : 1);
 }
 
@@ -377,24 +378,23 @@ void Editor::draw_slider(int slider) {
 
 void Editor::draw_chooser(int chooser) {
     const Parameter &p = parameters[CHOSEN[chooser]];
-    const float x = CHOOSERS_X + CHOOSER_STEP * (float)chooser, y = CHOOSERS_Y, room = CHOOSER_WIDTH - 2 * ARROW;
+    const float x = CHOOSERS_X[chooser], y = CHOOSERS_Y, width = chooser_width(chooser), room = width - 2 * ARROW;
     char name[64];
     write(CHOSEN[chooser], name, sizeof name);
-    if (CHOSEN[chooser] == PRESET) instrument.all().describe(name, sizeof name, "\n"); /* in two lines */
     const int choice = choice_of(chooser);
     canvas.text(x + 2, y - 8, 12, p.name, SOFT);
-    canvas.box(x, y, CHOOSER_WIDTH, CHOOSER_HEIGHT, 8, chooser == focus ? OUTER : LINE);
-    canvas.box(x + 1.5f, y + 1.5f, CHOOSER_WIDTH - 3, CHOOSER_HEIGHT - 3, 7, SURFACE);
+    canvas.box(x, y, width, CHOOSER_HEIGHT, 8, chooser == focus ? OUTER : LINE);
+    canvas.box(x + 1.5f, y + 1.5f, width - 3, CHOOSER_HEIGHT - 3, 7, SURFACE);
     const auto centre = [&](const char *line, float at, float size) {
         const float long_at_1 = canvas.text(0, 0, 1, line, INK, false);
         size = fminf(size, room / long_at_1);
-        canvas.text(x + (CHOOSER_WIDTH - size * long_at_1) / 2, y + at, size, line, INK);
+        canvas.text(x + (width - size * long_at_1) / 2, y + at, size, line, INK);
     };
-    char *second = strchr(name, '\n');
+    char *second = strchr(name, ' '); /* of what was changed */
     if (second) *second++ = 0, centre(second, 34, 12);
     centre(name, second ? 18 : 26, second ? 14 : 16);
     canvas.text(x + 10, y + 26, 16, "<", choice > 0 ? INK : LINE);
-    canvas.text(x + CHOOSER_WIDTH - 15, y + 26, 16, ">", choice < p.steps ? INK : LINE);
+    canvas.text(x + width - 15, y + 26, 16, ">", choice < p.steps ? INK : LINE);
 }
 
 } /* namespace yehu */

@@ -44,7 +44,7 @@ public:
     void type(char letter);
 
 private:
-    static constexpr int CHOOSERS = 4, SLIDERS = 12, CONTROLS = CHOOSERS + SLIDERS, LONGEST = 12, SHAPES = 8, POINTS = 64, STRINGS = 2;
+    static constexpr int CHOOSERS = 5, SLIDERS = 12, CONTROLS = CHOOSERS + SLIDERS, LONGEST = 12, SHAPES = 8, POINTS = 64, STRINGS = 2;
 
     bool follow();
     void put();
@@ -78,7 +78,7 @@ private:
     char typed[LONGEST] = ""; /* a value for the slider in focus, */
     int length = -1;          /* of so many letters; -1: none is typed */
     double slid[SLIDERS] = {};
-    int focus = 0, chosen[CHOOSERS] = {-1, -1, -1, -1};
+    int focus = 0, chosen[CHOOSERS] = {-1, -1, -1, -1, -1};
     struct yehu_snapshot seen = {};
     float shapes[STRINGS][SHAPES][POINTS] = {}; /* m; the latest at `latest` */
     int latest = 0;

@@ -89,7 +89,7 @@ bool Instrument::is_old(int parameter, double value) {
     if (is_same(parameter, value, this->value(parameter))) return know(parameter, value), false;
     if (!repeats && !is_same(parameter, value, known[parameter].load(usual))) return know(parameter, value), false;
     flag(moved_bits, parameter); /* so that it hears of it */
-    flag(moved_bits, PRESET);
+    for (int set = 0; set < SETS; set++) flag(moved_bits, set);
     return true;
 }
 

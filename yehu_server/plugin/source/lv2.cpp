@@ -1,5 +1,5 @@
 /* The plug-in for LV2 hosts. Its ports, in order: events, left, right, latency, and the parameters but
- * for the preset, since LV2 has presets of its own, which set ports. So ports hold all of its state.
+ * for preset and room, since LV2 has presets of its own, which set ports. So ports hold all of its state.
  */
 #include <new>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ namespace {
 using namespace yehu;
 
 enum { EVENTS, LEFT, RIGHT, LATENCY, FIRST };
-static_assert(PRESET == 0, "the parameters but for the first are ports");
+static_assert(SETS == 2, "the parameters but for the first are ports");
 
 /* As control-input-port-change-request.h of KXStudio's extensions, which sets of headers have not. */
 constexpr const char *REQUESTS = "http://kx.studio/ns/lv2ext/control-input-port-change-request";
@@ -77,7 +77,7 @@ void connect(LV2_Handle handle, uint32_t port, void *data) {
     else if (port == LEFT) plugin.left = (float *)data;
     else if (port == RIGHT) plugin.right = (float *)data;
     else if (port == LATENCY) plugin.latency = (float *)data;
-    else if (port - FIRST + 1 < PARAMETERS) plugin.ports[port - FIRST + 1] = (const float *)data;
+    else if (port - FIRST + SETS < PARAMETERS) plugin.ports[port - FIRST + SETS] = (const float *)data;
 }
 
 /* Memory is had here; else nothing sounds. */
@@ -105,12 +105,12 @@ void play(Plugin &plugin, const LV2_Atom_Event *event) {
 /* Ask the host for other values of ports: of parameters that moved with another one. */
 void report_moved(const Plugin &plugin, Instrument &instrument) {
     if (!plugin.requests || !instrument.has_moved()) return;
-    for (int i = PRESET + 1; i < PARAMETERS; i++) {
+    for (int i = SETS; i < PARAMETERS; i++) {
         if (!instrument.was_moved(i)) continue;
         const float now = (float)instrument.value(i);
-        if (plugin.requests->change(plugin.requests->handle, (uint32_t)(FIRST + i - 1), now) == 0) instrument.know(i, now);
+        if (plugin.requests->change(plugin.requests->handle, (uint32_t)(FIRST + i - SETS), now) == 0) instrument.know(i, now);
     }
-    instrument.was_moved(PRESET); /* which is no port */
+    for (int set = 0; set < SETS; set++) instrument.was_moved(set); /* which are no ports */
 }
 
 void run(LV2_Handle handle, uint32_t frames) {
@@ -121,7 +121,7 @@ void run(LV2_Handle handle, uint32_t frames) {
     if (plugin.events)
         LV2_ATOM_SEQUENCE_FOREACH(plugin.events, event) follow_transport(plugin, event->body);
     instrument.begin_block();
-    for (int i = PRESET + 1; i < PARAMETERS; i++)
+    for (int i = SETS; i < PARAMETERS; i++)
         if (plugin.ports[i] && *plugin.ports[i] != plugin.seen[i])
             instrument.parameter(0, i, plugin.seen[i] = *plugin.ports[i]);
     if (plugin.events) LV2_ATOM_SEQUENCE_FOREACH(plugin.events, event) play(plugin, event);
@@ -145,10 +145,10 @@ struct Ui {
 void edit(void *owner, int parameter, double value) {
     Ui &ui = *(Ui *)owner;
     ui.instrument->edit(parameter, value);
-    for (int i = PRESET + 1; i < PARAMETERS; i++) {
+    for (int i = SETS; i < PARAMETERS; i++) {
         const float now = (float)ui.instrument->value(i);
         const bool is_edited = ui.instrument->was_edited(i);
-        if (ui.instrument->was_moved(i) || is_edited) ui.write(ui.controller, (uint32_t)(FIRST + i - 1), sizeof now, 0, &now);
+        if (ui.instrument->was_moved(i) || is_edited) ui.write(ui.controller, (uint32_t)(FIRST + i - SETS), sizeof now, 0, &now);
     }
 }
 

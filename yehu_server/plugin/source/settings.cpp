@@ -31,32 +31,33 @@ bool is_same(int parameter, double one, double other) {
 
 Settings::Settings() {
     for (int i = 0; i < PARAMETERS; i++) values[i] = parameters[i].usual;
-    changed = 0;
+    for (auto &each : changed) each = 0;
 }
 
 double Settings::usual(int parameter) const {
-    for (int room = 0; room < 2; room++) {
-        const Values &own = presets[nearest(room == 1)];
+    for (int set = 0; set < SETS; set++) {
+        const Values &own = sets[set][chosen(set)];
         for (int i = 0; i < own.count; i++)
             if (own.values[i].parameter == parameter) return own.values[i].value;
     }
     return parameters[parameter].usual;
 }
 
-int Settings::nearest(bool room) const {
-    int best = preset(), least = PARAMETERS;
-    if (best != NO_PRESET && is_room[best] == room) return best;
-    for (int i = 1; i <= parameters[PRESET].steps; i++) {
-        const int off = count_changed(i);
-        if (is_room[i] == room && off < least) best = i, least = off;
+/* The preset or room that most values are of. */
+void Settings::find(int set) {
+    int best = 0, least = PARAMETERS;
+    for (int i = 1; i <= parameters[set].steps; i++) {
+        const int off = count_changed(set, i);
+        if (off < least) best = i, least = off;
     }
-    return best;
+    changed[set] = least > 0 ? best : 0;
+    store(set, least > 0 ? 0 : best);
 }
 
-int Settings::count_changed(int preset) const {
+int Settings::count_changed(int set, int choice) const {
     int count = 0;
-    for (int i = 0; i < presets[preset].count; i++) {
-        const Value &wanted = presets[preset].values[i];
+    for (int i = 0; i < sets[set][choice].count; i++) {
+        const Value &wanted = sets[set][choice].values[i];
         count += !is_same(wanted.parameter, value(wanted.parameter), wanted.value);
     }
     return count;
@@ -64,7 +65,7 @@ int Settings::count_changed(int preset) const {
 
 void Settings::copy(const Settings &other) {
     for (int i = 0; i < PARAMETERS; i++) values[i] = other.value(i);
-    changed = other.changed.load();
+    for (int set = 0; set < SETS; set++) changed[set] = other.changed[set].load();
 }
 
 void Settings::store(int parameter, double value) {

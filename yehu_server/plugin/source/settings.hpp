@@ -1,5 +1,5 @@
-/* The values of all parameters, and what comes with a change of one: a preset and a mapping set others,
- * and a preset is none as long as one of its values is another. Plug-in and host each have one, where a
+/* The values of all parameters, and what comes with a change of one: a preset, a room and a mapping set others,
+ * and a preset or room is none as long as one of its values is another. Plug-in and host each have one, where a
  * format has them apart (VST3). Values may be read from any thread.
  */
 #ifndef YEHU_SETTINGS_HPP
@@ -25,10 +25,10 @@ class Settings {
 public:
     Settings();
     double value(int parameter) const { return values[parameter].load(std::memory_order_relaxed); }
-    /* The preset that was chosen last, also where values of it are others now; or NO_PRESET. */
-    int preset() const { return changed ? changed.load() : (int)value(PRESET); }
-    bool is_changed() const { return changed > 0; }
-    /* The value of a parameter in the sound or room that `describe` names, or else its own usual one. */
+    /* The preset or room that was chosen last, also where values of it are others now; or 0. */
+    int chosen(int set) const { return is_changed(set) ? changed[set].load() : (int)value(set); }
+    bool is_changed(int set) const { return changed[set] > 0; }
+    /* The value of a parameter in the preset or room that was chosen last, or else its own usual one. */
     double usual(int parameter) const;
     void copy(const Settings &other);
     void store(int parameter, double value);
@@ -36,22 +36,20 @@ public:
      * value than before: first the parameter itself. */
     template <class Each> void change(int parameter, double value, Each each);
 
-    /* A value as text, and a text's value; whatever the locale is. The preset none has the name of the
-     * one that was changed. */
+    /* A value as text, and a text's value; whatever the locale is. A preset that is none has the name of
+     * the one that was changed. */
     void write(int parameter, double value, char *into, size_t size) const;
-    /* The sound and the room, as "vibrato, changed, hall": of the preset that was chosen last, and the nearest. */
-    void describe(char *into, size_t size, const char *between = ", ") const;
     static bool read(int parameter, const char *text, double *value);
     /* State as text; `save` returns its length, which may be more than `size`. */
     size_t save(char *into, size_t size) const;
     bool load(const char *text, size_t size);
 
 private:
-    int count_changed(int preset) const;
-    int nearest(bool room) const;
+    int count_changed(int set, int choice) const;
+    void find(int set);
 
     std::atomic<double> values[PARAMETERS];
-    std::atomic<int> changed; /* the preset that was changed, or 0 */
+    std::atomic<int> changed[SETS]; /* the preset or room that was changed, or 0 */
 };
 
 template <class Each> void Settings::change(int parameter, double value, Each each) {
@@ -65,10 +63,10 @@ template <class Each> void Settings::change(int parameter, double value, Each ea
     move(parameter, value);
     if (before == this->value(parameter)) return;
     const int choice = (int)this->value(parameter);
-    if (parameter == PRESET) {
-        changed = 0;
-        for (int i = 0; i < presets[choice].count; i++)
-            move(presets[choice].values[i].parameter, presets[choice].values[i].value);
+    if (parameter < SETS) {
+        const Values &now = sets[parameter][choice];
+        changed[parameter] = 0;
+        for (int i = 0; i < now.count; i++) move(now.values[i].parameter, now.values[i].value);
         return;
     }
     if (parameter == MAPPING) {
@@ -77,11 +75,13 @@ template <class Each> void Settings::change(int parameter, double value, Each ea
             move(old.values[i].parameter, parameters[old.values[i].parameter].usual);
         for (int i = 0; i < now.count; i++) move(now.values[i].parameter, now.values[i].value);
     }
-    const int preset = this->preset();
-    const bool is_whole = count_changed(preset) == 0;
-    if (is_whole != (changed > 0)) return;
-    changed = is_whole ? 0 : preset;
-    move(PRESET, is_whole ? preset : NO_PRESET);
+    for (int set = 0; set < SETS; set++) {
+        const int last = chosen(set);
+        const bool is_whole = count_changed(set, last) == 0;
+        if (is_whole != is_changed(set)) continue;
+        changed[set] = is_whole ? 0 : last;
+        move(set, is_whole ? last : 0);
+    }
 }
 
 } /* namespace yehu */

@@ -5,8 +5,8 @@
  *     /playing/bow_position=0.13
  *
  * A line for each parameter, by its address; a choice by its name. What a version does not know is
- * left out as it reads, so that states open in any version. A preset that was changed is none, and keeps
- * its name: `/preset=vibrato, changed`.
+ * left out as it reads, so that states open in any version. A preset or room that was changed is none, and
+ * keeps its name: `/preset=vibrato, changed`. One that is not named is found by its values.
  */
 #include "settings.hpp"
 
@@ -56,20 +56,19 @@ int parameter_at(const char *address, size_t length) {
     return -1;
 }
 
-/* The preset that was changed, of its name with that word; or 0. */
-int changed_in(const char *text) {
-    for (int i = 1; i <= parameters[PRESET].steps; i++) {
-        const size_t length = strlen(parameters[PRESET].choices[i]);
-        if (!strncmp(text, parameters[PRESET].choices[i], length) && !strcmp(text + length, CHANGED)) return i;
+/* The preset or room that was changed, of its name with that word; or 0. */
+int changed_in(int set, const char *text) {
+    for (int i = 1; i <= parameters[set].steps; i++) {
+        const size_t length = strlen(parameters[set].choices[i]);
+        if (!strncmp(text, parameters[set].choices[i], length) && !strcmp(text + length, CHANGED)) return i;
     }
     return 0;
 }
 } /* namespace */
 
 void Settings::write(int parameter, double value, char *into, size_t size) const {
-    const int preset = parameter == PRESET && value < 0.5 ? changed.load() : 0;
-    if (preset > 0) {
-        snprintf(into, size, "%s%s", parameters[PRESET].choices[preset], CHANGED);
+    if (parameter < SETS && value < 0.5 && is_changed(parameter)) {
+        snprintf(into, size, "%s%s", parameters[parameter].choices[chosen(parameter)], CHANGED);
         return;
     }
     if (const char *choice = choice_of(parameter, value)) {
@@ -82,16 +81,9 @@ void Settings::write(int parameter, double value, char *into, size_t size) const
     if (*unit) snprintf(into + length, size - length, " %s", unit);
 }
 
-void Settings::describe(char *into, size_t size, const char *between) const {
-    const int sound = nearest(false), room = nearest(true);
-    const auto mark = [&](int preset) { return count_changed(preset) ? CHANGED : ""; };
-    const char *const *names = parameters[PRESET].choices;
-    snprintf(into, size, "%s%s%s%s%s", names[sound], mark(sound), between, names[room], mark(room));
-}
-
 bool Settings::read(int parameter, const char *text, double *value) {
     const Parameter &p = parameters[parameter];
-    if (parameter == PRESET && changed_in(text) > 0) return *value = NO_PRESET, true;
+    if (parameter < SETS && changed_in(parameter, text) > 0) return *value = 0, true;
     for (int i = 0; p.choices && i <= p.steps; i++)
         if (!strcmp(p.choices[i], text)) return *value = p.lo + i, true;
     if (!read_number(text, value)) return false;
@@ -124,8 +116,7 @@ bool Settings::load(const char *text, size_t size) {
     const size_t heading = strcspn(HEADING, " ");
     if (size < heading || memcmp(text, HEADING, heading)) return false;
     for (int i = 0; i < PARAMETERS; i++) store(i, parameters[i].usual); /* what it does not name */
-    store(PRESET, NO_PRESET);
-    changed = 0;
+    bool is_named[SETS] = {};
     for (const char *at = text, *end = text + size; at < end;) {
         const char *line_end = (const char *)memchr(at, '\n', (size_t)(end - at));
         if (!line_end) line_end = end;
@@ -138,11 +129,14 @@ bool Settings::load(const char *text, size_t size) {
             memcpy(word, equals + 1, length);
             word[length] = 0;
             /* The name of a choice that this version has not is no number either. */
-            if (read(parameter, word, &value)) store(parameter, value);
-            if (parameter == PRESET) changed = changed_in(word);
+            const bool is_known = read(parameter, word, &value);
+            if (is_known) store(parameter, value);
+            if (parameter < SETS) is_named[parameter] = is_known, changed[parameter] = changed_in(parameter, word);
         }
         at = line_end + 1;
     }
+    for (int set = 0; set < SETS; set++)
+        if (!is_named[set]) find(set);
     return true;
 }
 

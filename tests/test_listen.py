@@ -74,10 +74,22 @@ def test_votes_are_counted_for_what_was_heard_and_not_for_its_side(folders, list
     assert (low, high) == pytest.approx((0.404, 0.596), abs=1e-3)
 
 
+def test_distances_are_small_for_the_same_kind_and_see_spectrum_and_motion_apart(folders, listen):
+    (folders / "recorded").mkdir()
+    for number in range(2):
+        soundfile.write(folders / "recorded" / f"{number}.wav", tone(310.0, 0.1, 0.5), RATE)
+    code, said, _ = listen("distances", folders / "recorded", folders / "old", folders / "new")
+    assert code == 0
+    found = {line[:24].strip(): [*map(float, line[24:].split())] for line in said.splitlines()[2:]}
+    assert found["old"][1] > found["new"][1] + 3.0  # it does not sway
+    assert found["old"][0] == pytest.approx(found["new"][0], abs=0.5)
+
+
 def test_what_cannot_be_compared_is_refused_in_a_line(folders, listen):
     (folders / "empty").mkdir()
-    for other in (folders / "empty", folders / "old"):
-        (folders / "empty" / "no.wav").write_text("no sound")
-        code, _, err = listen("pairs", f"A={other}", f"B={folders / 'empty'}", "-o", folders / "x")
-        assert (code, err.count("\n")) == (2, 1)
+    code, _, err = listen("distances", folders / "old", folders / "empty")
+    assert (code, err.count("\n")) == (2, 1)
+    (folders / "empty" / "no.wav").write_text("no sound")
+    code, _, err = listen("distances", folders / "old", folders / "empty")
+    assert (code, err.count("\n")) == (2, 1)
     assert group(str(folders / "old")).name == "old"

@@ -4,6 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from listening.distances import print_distances
 from listening.pairs import make_pairs, print_votes
 from listening.sounds import Group, UnfitSoundsError
 
@@ -31,6 +32,10 @@ def main() -> int:
     votes.add_argument("folder", type=Path, help="which `pairs` made")
     votes.add_argument("files", nargs="+", type=Path, metavar="VOTES.json")
     votes.set_defaults(run=print_votes)
+    distances = commands.add_parser("distances", help="measure how far sounds are from recordings")
+    distances.add_argument("recordings", type=group, metavar="RECORDINGS")
+    distances.add_argument("groups", nargs="+", type=group, metavar="NAME=FOLDER")
+    distances.set_defaults(run=print_distances)
     options = parser.parse_args()
     try:
         options.run(options)

@@ -106,14 +106,17 @@ def test_reading_takes_time_in_proportion(tmp_path, shape):
     assert lines[2] < MAX_RATIO * lines[1]
 
 
-# Lines of Python for each note of a dense file, and of all that is below them; before notes of MIDI
-# were paired once, and spans of ABC found by floats, there were 232 and 664.
+# Lines of Python for each note of a dense file, and of all that is below them; there were 232, 526,
+# 503, 1253 and 748 before events were columns and notes tuples.
 DENSE: dict[str, tuple[Callable[[int], bytes | str], int]] = {
     "dense.mid": (
         lambda n: midi(b"".join(on(1, 40 + at % 50) + off(0, 40 + at % 50) for at in range(n))),
-        212,
+        60,
     ),
-    "dense.abc": (lambda n: ABC + "a3/2b|" * (n // 2), 600),
+    "dense.abc": (lambda n: ABC + "a3/2b|" * (n // 2), 480),
+    "slurs.abc": (lambda n: ABC + "(ab)" * (n // 2), 450),
+    "ornaments.abc": (lambda n: ABC + "T{g}a" * n, 850),
+    "dense.jianpu": (lambda n: "1=C\n" + "q1 ( s2 ) " * (n // 2), 620),
 }
 
 

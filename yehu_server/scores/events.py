@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import repeat
 from typing import Any, ClassVar, NamedTuple, overload
 
 import mido
@@ -58,21 +59,17 @@ NAMES: dict[int, tuple[str, ...]] = {
     AFTERTOUCH: ("aftertouch", "value"),
     PITCHWHEEL: ("pitchwheel", "pitch"),
 }
-KINDS = {names[0]: kind for kind, names in NAMES.items()}
+CHANNEL_MESSAGES = {name for name, *_ in NAMES.values()}
 CENTRE = 8192  # of a pitch wheel
 KEY = 1 << 8  # a key's place in a code
 
 
 def code_of(message: Any) -> int | None:
     """A channel message as a number, status and data bytes; None for other messages."""
-    kind = KINDS.get(message.type)
-    if kind is None:
+    if message.type not in CHANNEL_MESSAGES:
         return None
-    own: dict[str, int] = vars(message)
-    data = [own[name] for name in NAMES[kind][1:]]
-    if kind == PITCHWHEEL:
-        data = [data[0] + CENTRE & 127, data[0] + CENTRE >> 7]
-    return (kind << 4 | own["channel"]) << 16 | data[0] << 8 | (data[1] if data[1:] else 0)
+    status, first, *second = message.bytes()
+    return status << 16 | first << 8 | (second[0] if second else 0)
 
 
 @contextlib.contextmanager
@@ -213,11 +210,15 @@ class Events(Sequence[ScoreEvent]):
         """The same with other messages."""
         return replace(self, code=code, others=(*self.others, *others))
 
-    def with_before(self, before: Sequence[tuple[int, int]]) -> Events:
-        """The same with events before some places: these, and the added events' codes."""
-        places, codes = np.array(before, np.int64).reshape(-1, 2).T
-        found = self.where(np.insert(np.arange(len(self)), places, places))
-        return found.with_codes(np.insert(self.code, places, codes))
+    def with_before(self, before: Sequence[tuple[int, ScoreEvent]]) -> Events:
+        """The same with more events, each before that at a place."""
+        places = np.array([place for place, _ in before], np.int64)
+        added = Events.of(event for _, event in before)
+        code = np.where(added.code < 0, added.code - len(self.others), added.code)
+        own = self.time_s, self.beat, self.track, self.code
+        more = added.time_s, added.beat, added.track, code
+        columns = (np.insert(*pair) for pair in zip(own, repeat(places), more, strict=False))
+        return Events(*columns, (*self.others, *added.others))
 
     def __len__(self) -> int:
         return len(self.code)

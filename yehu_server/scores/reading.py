@@ -34,6 +34,7 @@ from yehu_server.scores.tune_part import take_turns
 from yehu_server.scores.written.in_range import default_parts, moved
 from yehu_server.scores.written.notated import Written
 from yehu_server.scores.written.performed import leading_notes, performed, shortest_s
+from yehu_server.scores.written.tempo import WrittenClock
 from yehu_server.util.files import open_regular
 
 
@@ -195,8 +196,9 @@ def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
         written, line = moved(written, plays, options.within)
         remarks.append(line)
     remarks = [*filter(None, remarks)]
-    score = performed(replace(written, remarks=tuple(remarks)), plays, options.within)
-    leading = leading_notes(written, next(iter(default_parts(written)), 0))
+    clock = WrittenClock(written)
+    score = performed(replace(written, remarks=tuple(remarks)), plays, options.within, clock)
+    leading = leading_notes(written.parts[next(iter(default_parts(written)), 0)], clock)
     return replace(score, delays=delays_of(leading))
 
 

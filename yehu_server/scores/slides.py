@@ -7,7 +7,6 @@ long each lasts, the seed says; without variation no seed changes it.
 """
 
 import math
-from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -15,6 +14,8 @@ from functools import partial
 from itertools import pairwise
 from random import Random
 from typing import NamedTuple
+
+import numpy as np
 
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.physics.elementary import exp
@@ -26,7 +27,7 @@ from yehu_server.params.spec import TURNED_ON
 from yehu_server.params.table import find
 from yehu_server.playing.options import PlayingOptions
 from yehu_server.playing.stringing import notes_of as range_of
-from yehu_server.scores.events import BEND, Events, ScoreEvent, Setting
+from yehu_server.scores.events import BEND, ScoreEvent, Setting
 from yehu_server.scores.score import Score, ScoreNote
 
 ARTICULATION, STRING = "/playing/articulation", "/playing/string"
@@ -77,25 +78,22 @@ def with_slides(score: Score, amount: float, playing: PlayingOptions) -> Score:
     within = range_of(playing.quantities)
     slides = list(_slides(score, amount, playing, within))
     on_strings = {slide.note.begins for slide in slides if slide.string}
-    before: dict[int, list[ScoreEvent]] = defaultdict(list)  # by the number of the event after
+    before: list[tuple[int, ScoreEvent]] = []  # each with the number of the event after
     for slide in slides:
         note, after = slide.note, slide.after
         on, then = score.events[note.begins], score.events[after.begins]
         set_on, set_then = (partial(_setting, event, after.channel) for event in (on, then))
         if slide.string:
-            before[note.begins].append(set_on(on.time_s, STRING, slide.string))
+            before.append((note.begins, set_on(on.time_s, STRING, slide.string)))
             if after.begins not in on_strings:
-                before[after.begins + 1].append(set_then(then.time_s, STRING, None))
+                before.append((after.begins + 1, set_then(then.time_s, STRING, None)))
         count = math.ceil(slide.lasts_s / STEP_S)
         for number in range(1, count + 1):
             at_s = min(note.end_s, then.time_s) - BEND_S - (count - number) * STEP_S
-            place = bisect_right(score.events, at_s, key=lambda event: event.time_s)
+            place = int(np.searchsorted(score.events.time_s, at_s, side="right"))
             bend = slide.semitones * logistic(number / count)
-            before[place].append(set_on(at_s, BEND, bend, is_passing=True))
-    events: list[ScoreEvent] = []
-    for number, event in enumerate(score.events):
-        events += [*before[number], event]
-    return replace(score, events=Events.of((*events, *before[len(score.events)])))
+            before.append((place, set_on(at_s, BEND, bend, is_passing=True)))
+    return replace(score, events=score.events.with_before(before))
 
 
 def _setting(

@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Callable
 from fractions import Fraction
+from functools import lru_cache
 from operator import itemgetter
 
 from yehu_server.scores.jianpu.form import (
@@ -47,6 +48,13 @@ SLUR_AT_BAR = "slurs from the note before a bar line (a slur from the next note 
 Counts = Counter[str]
 
 
+@lru_cache(maxsize=1024)
+def _form_of(text: str) -> re.Match[str] | None:
+    """A word of the form, by the first of the patterns that fits; None where it is none."""
+    forms = (_BAR_SIGNS, _TUPLET, _REPEAT, _TEMPO, _METRE, _BARS_REST)
+    return next(filter(None, (form.fullmatch(text) for form in forms)), None)
+
+
 class PartParser:
     """Reads the words of a part, one after another.
 
@@ -85,6 +93,14 @@ class PartParser:
             lambda word: self.scale.read_key(word.text),
             self._as_attached,
         )
+        self._forms: dict[re.Pattern[str], Callable[[re.Match[str], Word], None]] = {
+            _BAR_SIGNS: self._bar_line,
+            _TUPLET: self._begin_tuplet,
+            _REPEAT: self._begin_repeat,
+            _TEMPO: self._tempo,
+            _METRE: self._metre,
+            _BARS_REST: self._rest_of_bars,
+        }
 
     def read(self, word: Word) -> None:
         """Read one word. Raises ScoreError where nothing after it could be in time."""
@@ -285,29 +301,20 @@ class PartParser:
         text = word.text
         if text in JUMPS:
             self._braces.add(text)
-        elif _BAR_SIGNS.fullmatch(text):
-            self._bar_line(text, word)
         elif text == "}":
             self._braces.close(word)
         elif text == "A{":
             self._braces.open_endings(word)
         elif text == "]":
             self._tuplet, self._tuplet_word = Fraction(1), None
-        elif found := _TUPLET.fullmatch(text):
-            self._begin_tuplet(int(found[1]), word)
-        elif found := _REPEAT.fullmatch(text):
-            self._braces.open_repeat(found[1] or "2", word)
-        elif found := _TEMPO.fullmatch(text):
-            self._tempo(found, word)
-        elif found := _METRE.fullmatch(text):
-            self._metre(found, word)
-        elif found := _BARS_REST.fullmatch(text):
-            self._rest_of_bars(found, word)
+        elif (found := _form_of(text)) is not None:
+            self._forms[found.re](found, word)
         else:
             return False
         return True
 
-    def _bar_line(self, text: str, word: Word) -> None:
+    def _bar_line(self, found: re.Match[str], word: Word) -> None:
+        text = found[0]
         self._is_after_bar = True
         if text.startswith(":"):
             self._braces.end_by_sign()
@@ -316,7 +323,11 @@ class PartParser:
         if text.endswith(":"):
             self._braces.begin_by_sign(word)
 
-    def _begin_tuplet(self, notes: int, word: Word) -> None:
+    def _begin_repeat(self, found: re.Match[str], word: Word) -> None:
+        self._braces.open_repeat(found[1] or "2", word)
+
+    def _begin_tuplet(self, found: re.Match[str], word: Word) -> None:
+        notes = int(found[1])
         if notes > MAX_TUPLET:
             raise failure(word, f"more than {MAX_TUPLET} notes in a tuplet")
         power = 1 << max(1, (notes - 1).bit_length())

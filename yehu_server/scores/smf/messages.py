@@ -1,5 +1,6 @@
 """The channel messages of a MIDI file in columns, and those of them that are played."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -124,52 +125,37 @@ def ended(messages: Messages, faults: DamageReport) -> Messages:
     """Return messages in order, with a note-off for each note that nothing ends.
 
     Such a note lasts until another note of its channel begins. Where none does, it lasts as long
-    as the score.
+    as the score. Percussion's notes end by themselves.
     """
-    held, is_on = _held(messages)
-    source = messages.source
-    later = np.full(len(held), -1)
-    for channel in np.unique(source[held] & 15) if len(held) else ():
-        onsets = np.flatnonzero(is_on & (source & 15 == channel))
-        own = source[held] & 15 == channel
-        after = np.searchsorted(messages.tick[onsets], messages.tick[held[own]], side="right")
-        next_one = np.append(onsets, -1)[after]
-        later[own] = np.where(messages.song[next_one] == messages.song[held[own]], next_one, -1)
-    held, later = held[later >= 0], later[later >= 0]
-    if not len(held):
+    kind, source = messages.kind, messages.source
+    is_on = (kind == NOTE_ON) & (messages.code & 127 > 0)
+    ends_all = (kind == CONTROL) & np.isin(messages.first, ENDS_ALL)
+    found = np.flatnonzero((kind == NOTE_ON) | (kind == NOTE_OFF) | ends_all)
+    columns = found, source[found], messages.first[found], is_on[found], ends_all[found]
+    held: dict[int, dict[int, int]] = defaultdict(dict)  # by channel and key, the note's place
+    for place, channel, key, begins, ends in zip(*(c.tolist() for c in columns), strict=True):
+        keys = held[channel]
+        if begins:
+            keys[key] = place
+        elif ends:
+            keys.clear()
+        elif key in keys:
+            del keys[key]
+    own = (keys for channel, keys in held.items() if channel & 15 != PERCUSSION_CHANNEL)
+    places = np.array([place for keys in own for place in keys.values()], np.int64)
+    # The next onset of each one's channel; songs have other ticks.
+    since = (source & 15) << 52 | messages.tick
+    onsets = np.flatnonzero(is_on)
+    onsets = onsets[np.argsort(since[onsets], kind="stable")]
+    later = np.searchsorted(since[onsets], since[places], side="right")
+    later = np.append(onsets, -1)[later]
+    has_end = (later >= 0) & (source[later] == source[places])
+    places, later = places[has_end], later[has_end]
+    if not len(places):
         return messages
-    at = messages.at[held]
-    faults.add("a note without an end stopped at the next one", int(at.min()), len(at))
-    added = messages.where(held)
+    added = messages.where(places)
+    faults.add("a note without an end stopped at the next one", int(added.at.min()), len(places))
     off = added.code & 0x0FFF00 | NOTE_OFF << 20 | RELEASE
     added = added._replace(tick=messages.tick[later], code=off)
     both = Messages(*map(np.concatenate, zip(added, messages, strict=True)))
     return both.where(np.argsort(both.tick, kind="stable"))  # before the next note
-
-
-def _held(messages: Messages) -> tuple[Array, Array]:
-    """The places of note-ons that still hold at the end; and which messages are note-ons.
-
-    They are in the order of the channels, then as the keys went down. Percussion holds none: its
-    notes end by themselves.
-    """
-    code, kind, source = messages.code, messages.kind, messages.source
-    is_on = (kind == NOTE_ON) & (code & 127 > 0)
-    is_note = (kind == NOTE_ON) | (kind == NOTE_OFF)
-    ends_all = (kind == CONTROL) & np.isin(messages.first, ENDS_ALL)
-    freed = np.full(len(code) and int(source.max()) + 1, -1)  # the last place that ends all
-    freed[source[ends_all]] = np.flatnonzero(ends_all)
-    notes = np.flatnonzero(is_note & (source & 15 != PERCUSSION_CHANNEL))
-    key = (source << 7 | messages.first)[notes]
-    order = np.argsort(key, kind="stable")
-    notes, is_next = notes[order], key[order[1:]] != key[order[:-1]]
-    is_last, is_first = (
-        np.append(is_next, True)[: len(notes)],
-        np.append(True, is_next)[: len(notes)],
-    )
-    was_down = np.append(False, is_on[notes] & (notes > freed[source[notes]]))[:-1] & ~is_first
-    down = notes[np.maximum.accumulate(np.where(was_down, 0, np.arange(len(notes))))]
-    holds = is_last & is_on[notes] & (notes > freed[source[notes]])
-    channels, first_use = np.unique(source[is_note | ends_all], return_index=True)
-    use = first_use[np.searchsorted(channels, source[notes[holds]])]
-    return notes[holds][np.lexsort((down[holds], use))], is_on

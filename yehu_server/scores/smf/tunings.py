@@ -20,6 +20,7 @@ from yehu_server.scores.events import (
     NOTE_ON,
     PITCHWHEEL,
     Events,
+    ScoreEvent,
     Setting,
 )
 from yehu_server.scores.score import Score
@@ -94,8 +95,7 @@ def retuned(
     moved: dict[int, int] = {}  # by channel and key as written, where it sounds
     bends: dict[int, float] = {}
     remarks: dict[str, None] = {}
-    settings: dict[Setting, int] = {}  # and their codes
-    before: list[tuple[int, int]] = []  # places of notes, and codes of settings before them
+    before: list[tuple[int, ScoreEvent]] = []  # places of notes, and settings before them
 
     def take(time_s: float) -> None:
         while left and left[-1][0] <= time_s:
@@ -119,15 +119,15 @@ def retuned(
             elif bend != bends.get(channel, 0.0):
                 bends[channel] = bend
                 setting = Setting(BEND, bend or None, channel)
-                before.append((place, settings.setdefault(setting, -1 - len(settings))))
+                beat, track = float(events.beat[place]), int(events.track[place])
+                before.append((place, ScoreEvent(time_s, setting, beat, track)))
         else:
             key = moved.pop(source, note)
         sounding.append(key)
     if len(codes):
         take(events.time_s[-1])
     codes[places] = codes[places] & ~0x7F00 | np.array(sounding, np.int64) << 8
-    found = events.with_codes(codes, tuple(settings))
-    return found.with_before(before), tuple(remarks)
+    return events.with_codes(codes).with_before(before), tuple(remarks)
 
 
 def transposed_keys(score: Score) -> dict[int, float]:

@@ -3,6 +3,8 @@
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import repeat
+from operator import itemgetter
 
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Sign, Span
 from yehu_server.scores.written.tempo import WrittenClock
@@ -34,29 +36,31 @@ class Loudness:
         # Beats are floats here: swells ask for many.
         self._beats: list[float] = []
         self._levels: list[float] = []
-        self._notes, self._clock = part.notes, clock
-        self._starts = [note.beat for note in part.notes]
-        self._build(sorted(signs, key=lambda s: s.beat), sorted(hairpins, key=lambda s: s.begin))
+        self._part, self._clock = part, clock
+        self._build(
+            sorted(signs, key=lambda s: float(s.beat)),
+            sorted(hairpins, key=lambda s: float(s.begin)),
+        )
 
     def _build(self, signs: list[Sign], hairpins: list[Span]) -> None:
-        changes = sorted(
-            [(sign.beat, 0, sign) for sign in signs] + [(span.begin, 1, span) for span in hairpins],
-            key=lambda change: change[:2],
-        )
-        starts = [sign.beat for sign in signs]
+        starts = [float(sign.beat) for sign in signs]
+        changes: list[tuple[float, int, Sign | Span]] = [
+            *zip(starts, repeat(0), signs, strict=False),
+            *((float(span.begin), 1, span) for span in hairpins),
+        ]
         there = 0.0  # where the last sign is complete
-        for exact, _, change in changes:
-            beat = float(exact) if isinstance(change, Sign) else max(float(exact), there)
+        for at, _, change in sorted(changes, key=itemgetter(0, 1)):
+            beat = at if isinstance(change, Sign) else max(at, there)
             level = self.at(beat)
             while self._beats and self._beats[-1] > beat:  # a hairpin that another sign cuts short
                 self._beats.pop()
                 self._levels.pop()
             self._add(beat, level)
             if isinstance(change, Sign):
-                there = self._reached(exact)
+                there = self._reached(change.beat)
                 self._add(there, _level_of(change))
                 continue
-            after = bisect_left(starts, change.end)
+            after = bisect_left(starts, float(change.end))
             aim = level + (HAIRPIN if change.name == "crescendo" else -HAIRPIN)
             if after < len(signs) and signs[after].beat <= change.end + REACH:
                 # To the dynamic after it, unless that lies the other way.
@@ -66,7 +70,7 @@ class Loudness:
 
     def _reached(self, beat: Fraction) -> float:
         """The beat at which a sign is complete: at once, or soon where a note is held over it."""
-        note = self._notes[max(bisect_right(self._starts, beat) - 1, 0)]
+        note = self._part.notes[max(bisect_right(self._part.begins_at, float(beat)) - 1, 0)]
         if not note.beat < beat < note.end:
             return float(beat)
         soon = self._clock.beat_at(self._clock.seconds(beat) + CHANGE_S)
@@ -106,7 +110,7 @@ class Loudness:
     def velocity(self, note: Note) -> int:
         """The velocity of a note: its loudest moment."""
         loudest = self._range(note)[1]
-        name = self._forced.get(note.beat) if self._forced else None
+        name = self._forced.get(note.begins_at) if self._forced else None
         if name is not None:
             loudest = max(float(DYNAMICS[FORCED[name][0]]), loudest + FORCED_BY)
         if note.marks:
@@ -127,12 +131,12 @@ def _level_of(sign: Sign) -> float:
     return float(LEVELS[sign.name])
 
 
-def _first_notes(part: Part, forced: list[Sign]) -> dict[Fraction, str]:
+def _first_notes(part: Part, forced: list[Sign]) -> dict[float, str]:
     """The forced signs, by the beats of the notes that they are for."""
-    beats = [note.beat for note in part.notes]
+    beats = part.begins_at
     found = {}
     for sign in forced:
-        at = bisect_left(beats, sign.beat)
+        at = bisect_left(beats, float(sign.beat))
         if at < len(beats):
             found[beats[at]] = sign.name
     return found

@@ -48,15 +48,18 @@ Beats = tuple[float, float]  # at which a note begins and ends
 
 
 def performed(
-    written: Written, plays: Sequence[int] | None = None, within: NoteRange = YEHU
+    written: Written,
+    plays: Sequence[int] | None = None,
+    within: NoteRange = YEHU,
+    clock: WrittenClock | None = None,
 ) -> Score:
     """Return a written score as it is played.
 
     `plays` are the numbers of the parts to play, from 0; by default all. Tempo and waits are of
-    all. Open strings and harmonics are those of `within`. Raises ScoreError where there
-    is no note, or it lasts longer than a day.
+    all, as the `clock` of the score has them. Open strings and harmonics are those of `within`.
+    Raises ScoreError where there is no note, or it lasts longer than a day.
     """
-    clock = WrittenClock(written)
+    clock = clock or WrittenClock(written)
     warnings = [*written.warnings, *written.not_understood]
     chosen = range(len(written.parts)) if plays is None else plays
     numbers = [number for number in chosen if written.parts[number].notes]
@@ -94,12 +97,11 @@ def shortest_s(written: Written) -> float:
     return WrittenClock(written).seconds(min(ends, default=0))
 
 
-def leading_notes(written: Written, number: int) -> NoteColumns:
+def leading_notes(part: Part, clock: WrittenClock) -> NoteColumns:
     """A part's notes as written, which all follow, but as long as fermatas have them."""
-    part, seconds_of = written.parts[number], WrittenClock(written).seconds_of
     begins, ends = np.array(part.begins_at), np.array(part.ends_at)
     keys, none = np.array([_key_of(note.pitch) for note in part.notes]), np.zeros(len(begins))
-    times_s = seconds_of(begins), seconds_of(ends)
+    times_s = clock.seconds_of(begins), clock.seconds_of(ends)
     return NoteColumns(none - 1, none - 1, none, keys, none, *times_s, begins, none)
 
 

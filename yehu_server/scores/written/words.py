@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.scores.written.notated import Span
@@ -79,6 +80,7 @@ class Meaning:
     value: float | None = None
 
 
+@lru_cache(maxsize=1024)
 def meaning_of(text: str) -> Meaning | None:
     """Return the meaning of words; None where it is not known."""
     words = " ".join(text.split()).strip(" ()[]\"'").lower()

@@ -16,6 +16,7 @@ pytestmark = [
     pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb"),
 ]
 PREV, NEXT = (40, 324), (125, 324)  # places in the chooser of presets
+SLIDER = 108, 205  # four fifths of the first
 WOOD = 0xE2, 0xBF, 0x8D
 TAB, RIGHT, END = 23, 114, 115  # codes of keys
 KEYS = {**dict(zip("1234567890-", range(10, 21), strict=True)), ".": 60, "p": 33}
@@ -136,11 +137,11 @@ def test_it_is_played_by_mouse_and_keys_and_the_host_hears_of_it(window, shown):
 def test_sliders_are_moved_by_mouse_and_keys_and_have_a_usual_value(window, shown):
     vibrato, gain = shown["/playing/vibrato"], shown["/output/gain"]
     window("open")
-    window("click 108 205")  # at four fifths of the first
+    window(f"click {SLIDER[0]} {SLIDER[1]}")
     assert becomes(window, vibrato.number, 80.0)
     assert becomes(window, shown["/preset"].number, 0.0)  # it is none of its values
     assert window("play 1")[2] == 2
-    window("click 108 205")
+    window(f"click {SLIDER[0]} {SLIDER[1]}")
     assert becomes(window, vibrato.number, vibrato.default)
     assert becomes(window, shown["/preset"].number, shown["/preset"].default)
     for code in (TAB, TAB, TAB, END):
@@ -153,7 +154,7 @@ def test_arrows_step_from_a_preset_that_was_changed_and_its_name_restores_it(win
     less, name, more = (f"click {x} 324" for x in (20, 72, 125))
     window("open")
     for step, click, back in ((0, name, None), (1, more, less), (-1, less, None)):
-        window("click 108 205")
+        window(f"click {SLIDER[0]} {SLIDER[1]}")
         assert becomes(window, vibrato.number, 80.0)
         assert becomes(window, preset.number, 0.0)
         window(click)
@@ -162,7 +163,7 @@ def test_arrows_step_from_a_preset_that_was_changed_and_its_name_restores_it(win
             window(back)
             assert becomes(window, preset.number, preset.default)
     for value in 80.0, 0.0:  # which the preset "ordinary" has
-        window("click 108 205")
+        window(f"click {SLIDER[0]} {SLIDER[1]}")
         assert becomes(window, vibrato.number, value)
 
 
@@ -215,22 +216,52 @@ def test_sound_and_window_do_not_disturb_each_other(window, shown):
     window("close")
 
 
-def test_a_vst3_host_hears_of_a_choice(built, display, shown, tmp_path):
+@pytest.fixture
+def vst3_window(built, display, tmp_path):
+    """Click at a place in the window of a small VST3 host; what it heard."""
     program = tmp_path / "vst3_window"
     flags = ["-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{HEADERS}", "-o", str(program)]
     command = ["g++", *flags, str(HERE / "vst3_window.cpp"), "-ldl", "-lxcb"]
     subprocess.run(command, check=True)
     library = next((built / "Yehu.vst3").rglob("*.so"))
-    done = subprocess.run(
-        [program, library, *map(str, NEXT)],
-        env={**os.environ, "DISPLAY": display},
-        stdout=subprocess.PIPE,
-        check=True,
-    )
-    opened, closed, edits, number, value, kept, width, restarted = map(float, done.stdout.split())
+
+    def click(x, y):
+        done = subprocess.run(
+            [program, library, str(x), str(y)],
+            env={**os.environ, "DISPLAY": display},
+            stdout=subprocess.PIPE,
+            check=True,
+        )
+        return map(float, done.stdout.split())
+
+    return click
+
+
+def test_a_vst3_host_hears_of_a_choice_and_of_a_slider_that_is_held(vst3_window, shown):
+    opened, closed, edits, number, value, kept, width, restarted, held, left = vst3_window(*NEXT)
     assert (opened, closed, edits) == (1, 0, 1)
     assert number == shown["/preset"].number
     wanted = (shown["/preset"].default + 1) / shown["/preset"].steps
     assert value == kept == pytest.approx(wanted, abs=1e-6)
     assert restarted == 1 << 2  # values of parameters have changed
     assert width == 1020
+    assert (held, left) == (0, 0)
+    *_, edits, number, _, _, _, _, held, left = vst3_window(*SLIDER)
+    assert (edits, number, held, left) == (1, shown["/playing/vibrato"].number, 1, 0)
+
+
+def test_a_drag_is_one_gesture(window, shown):
+    """Hosts that record automation while something is touched would have holes in it."""
+    vibrato = shown["/playing/vibrato"].number
+    window("open")
+    window(f"click {SLIDER[0]} {SLIDER[1]}")
+    for x, value in ((87, 60.0), (66, 40.0)):
+        assert becomes(window, vibrato, value + 20.0)
+        *_, begun, ended = window("play 1")
+        assert (begun, ended) == (1, 0)
+        window(f"drag {x} {SLIDER[1]}")
+        assert becomes(window, vibrato, value)
+    window("release")
+    window("tick")
+    *_, begun, ended = window("play 1")
+    assert (begun, ended) == (1, 1)

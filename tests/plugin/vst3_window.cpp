@@ -18,7 +18,7 @@
 #include <xcb/xcb.h>
 
 namespace {
-int timers, edits, restarted, waited;
+int timers, edits, begun, ended, restarted, waited;
 v3_timer_handler **timer;
 v3_event_handler **waiting;
 v3_param_id edited;
@@ -33,13 +33,14 @@ v3_result V3_API forget(void *, v3_event_handler **) { return waiting = nullptr,
 v3_result V3_API start(void *, v3_timer_handler **handler, uint64_t) { return timers++, timer = handler, V3_OK; }
 v3_result V3_API stop(void *, v3_timer_handler **) { return timers--, V3_OK; }
 v3_result V3_API resize(void *, v3_plugin_view **, v3_view_rect *) { return V3_FALSE; }
-v3_result V3_API mark(void *, v3_param_id) { return V3_OK; }
+v3_result V3_API begin(void *, v3_param_id) { return begun++, V3_OK; }
+v3_result V3_API end(void *, v3_param_id) { return ended++, V3_OK; }
 v3_result V3_API perform(void *, v3_param_id id, double to) { return edits++, edited = id, value = to, V3_OK; }
 v3_result V3_API restart(void *, int32_t flags) { return restarted |= flags, V3_OK; }
 
 const v3_run_loop_cpp loop_table = {unknown, {wait, forget, start, stop}};
 const v3_plugin_frame_cpp frame_table = {unknown, {resize}};
-const struct { v3_funknown unknown; v3_component_handler edits; } handler_table = {unknown, {mark, perform, mark, restart}};
+const struct { v3_funknown unknown; v3_component_handler edits; } handler_table = {unknown, {begin, perform, end, restart}};
 const void *loop = &loop_table, *frame = &frame_table, *handler = &handler_table;
 
 v3_result V3_API query(void *, const v3_tuid id, void **into) {
@@ -98,11 +99,12 @@ int main(int words, char **word) {
         width = geometry ? geometry->width : 0;
         free(geometry);
     }
+    const int held = begun - ended;
     v3_cpp_obj(view)->removed(view);
     if (waiting) return 8;
     v3_cpp_obj_unref(view);
-    printf("%d %d %d %u %g %g %d %d\n", open_timers, timers, edits, edited, value,
-           v3_cpp_obj(controller)->get_parameter_normalised(controller, edited), width, restarted);
+    printf("%d %d %d %u %g %g %d %d %d %d\n", open_timers, timers, edits, edited, value,
+           v3_cpp_obj(controller)->get_parameter_normalised(controller, edited), width, restarted, held, begun - ended);
     v3_cpp_obj_unref(controller);
     free(tree);
     xcb_disconnect(x);

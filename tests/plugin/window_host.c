@@ -10,6 +10,8 @@
  *     state                save it, and load it again
  *     tick                 its timer is due
  *     click X Y            and press: events as of a user, of the first button and of a key
+ *     drag X Y             the same button, pressed
+ *     release
  *     key CODE
  *     size WIDTH HEIGHT    what becomes of a size that is asked for
  *     shot FILE            the pixels of the window, as a PPM
@@ -34,7 +36,7 @@
 
 static const clap_plugin_t *plugin;
 static int timers, asked[2];
-static _Atomic int edits;
+static _Atomic int edits, gestures[2]; /* begun and ended */
 static xcb_connection_t *x;
 static xcb_window_t window;
 
@@ -68,6 +70,8 @@ static const clap_event_header_t *CLAP_ABI get(const clap_input_events_t *list, 
 }
 static bool CLAP_ABI push(const clap_output_events_t *list, const clap_event_header_t *event) {
     if (event->type == CLAP_EVENT_PARAM_VALUE) edits++;
+    if (event->type == CLAP_EVENT_PARAM_GESTURE_BEGIN) gestures[0]++;
+    if (event->type == CLAP_EVENT_PARAM_GESTURE_END) gestures[1]++;
     return (void)list, true;
 }
 
@@ -163,6 +167,8 @@ int main(int words, char **word) {
             if (!state->save(plugin, &out) || !state->load(plugin, &in)) return 8;
         } else if (!strncmp(line, "tick", 4)) timer->on_timer(plugin, 7);
         else if (!strncmp(line, "click", 5)) send(XCB_BUTTON_PRESS, 1, (int)a, (int)b);
+        else if (!strncmp(line, "drag", 4)) send(XCB_MOTION_NOTIFY, 0, (int)a, (int)b);
+        else if (!strncmp(line, "release", 7)) send(XCB_BUTTON_RELEASE, 1, 0, 0);
         else if (!strncmp(line, "key", 3)) send(XCB_KEY_PRESS, (int)a, 0, 0);
         else if (!strncmp(line, "size", 4)) {
             width = a, height = b;
@@ -173,7 +179,7 @@ int main(int words, char **word) {
             free(xcb_get_input_focus_reply(x, xcb_get_input_focus(x), NULL));
         } else if (!strncmp(line, "shot", 4)) shot(text, (int)width, (int)height);
         else if (!strncmp(line, "value", 5)) params->get_value(plugin, a, &value);
-        printf("%g %d %d %d %d %u %u\n", value, timers, edits, asked[0], asked[1], width, height);
+        printf("%g %d %d %d %d %u %u %d %d\n", value, timers, edits, asked[0], asked[1], width, height, gestures[0], gestures[1]);
         fflush(stdout);
     }
     plugin->deactivate(plugin), plugin->destroy(plugin), entry->deinit();

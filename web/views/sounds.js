@@ -51,15 +51,18 @@ export function showSounds({ instrument: { player }, tuned, yehu, taught }) {
     return addresses.length > 0 && addresses.every((address) => ROOM.includes(address));
   });
   const sounds = presets.filter((preset) => !rooms.includes(preset));
+  // What a note moves itself, as by its velocity, makes no other sound.
+  const isKept = (/** @type {string} */ address) =>
+    !taught.movers(address).some((source) => facts.sources.OF_ONE_NOTE.includes(source));
   const room = section(
     "room.name",
     note(words("room.about")),
-    ...(rooms.length ? [cards(player, rooms, "room", words("room.name"))] : []),
+    ...(rooms.length ? [cards(player, rooms, "room", words("room.name"), isKept)] : []),
     makeSliders(player, ROOM),
   );
   room.id = "room";
   find("panel-sound", HTMLElement).append(
-    section("sound.presets", cards(player, sounds, "sound", words("sound.presets"))),
+    section("sound.presets", cards(player, sounds, "sound", words("sound.presets"), isKept)),
     room,
     chooser("tuning", Object.keys(facts.tunings), "equal", aboutTuning, (name) => {
       player.applyTuning(name);
@@ -79,8 +82,9 @@ export function showSounds({ instrument: { player }, tuned, yehu, taught }) {
  * @param {{name: string, about: string, values: Readonly<Record<string, number>>}[]} presets
  * @param {"sound" | "room"} kind
  * @param {() => string} label of all of them, for screen readers
+ * @param {(address: string) => boolean} isKept whether a parameter stays until somebody moves it
  */
-function cards(player, presets, kind, label) {
+function cards(player, presets, kind, label, isKept) {
   const all = presets.map(({ name, about, values }) => {
     const title = make("span");
     const card = makeButton("", () => {
@@ -92,7 +96,8 @@ function cards(player, presets, kind, label) {
     const countChanged = () =>
       Object.entries(values).filter(([address, value]) => {
         const param = findParameter(address);
-        return written(param, player.value(address)) !== written(param, value);
+        const isOther = written(param, player.value(address)) !== written(param, value);
+        return isOther && isKept(address);
       }).length;
     return { name, card, title, countChanged };
   });

@@ -69,7 +69,7 @@ WINDOW = """\
     a {kind} ;
     ui:binary <{library}> ;
     lv2:requiredFeature ui:parent , <http://lv2plug.in/ns/ext/instance-access> ;
-    lv2:optionalFeature ui:resize ;
+    lv2:optionalFeature ui:resize , ui:touch ;
     lv2:extensionData ui:idleInterface , ui:resize .
 """
 FIRST_PARAMETER = 4  # number of its port

@@ -1,6 +1,6 @@
 /** Looks at which sound the page says it has, beside what its parameters are. */
 
-import { READY, SIZES, drawn, open } from "./browser.mjs";
+import { READY, SIZES, drawn, open, requested } from "./browser.mjs";
 
 /** The presets that are shown as chosen, or as changed. @param {import("playwright-core").Page} page */
 async function chosen(page) {
@@ -26,7 +26,7 @@ async function linkOfAnother() {
   const commands = [
     { frame: 0, kind: BEGIN, index: 0, value: 70, other: 70 },
     { frame: 500, kind: WRITE, index: vibrato, value: 50, other: 0 },
-    { frame: 1500, kind: END, index: 0, value: 70, other: 0 },
+    { frame: 3000, kind: END, index: 0, value: 70, other: 0 },
   ];
   const values = { ...sound.values, ...hall.values, "/playing/articulation": 5 };
   return linkOf({ rate: 1000, values, commands, players: 1 });
@@ -80,6 +80,9 @@ export default async function (browser, url) {
   await page.reload();
   await page.waitForSelector(READY);
   found.again = await chosen(page);
+  await page.keyboard.press("KeyV");
+  await requested(page, "BEGIN");
+  found.played = await chosen(page);
   await page.setViewportSize(SIZES.phone);
   await drawn(page);
   found.phone = await page.evaluate(() => [

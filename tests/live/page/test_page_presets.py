@@ -26,6 +26,7 @@ def test_a_reset_of_all_is_shown_and_can_be_undone(found) -> None:
 
 def test_the_sound_room_and_articulation_that_were_chosen_are_there_again(found) -> None:
     assert found["again"] == ["Sul tasto", "Hall", "3"]
+    assert found["played"] == found["again"]  # though a key's velocity moves the bow's pressure
 
 
 def test_on_a_phone_loudness_and_vibrato_have_names_and_values(found) -> None:

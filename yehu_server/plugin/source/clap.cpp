@@ -81,9 +81,14 @@ void report(Plugin &plugin, const clap_output_events_t *out) {
         event.param_id = parameters[i].number;
         event.note_id = event.port_index = event.channel = event.key = -1;
         event.value = instrument.value(i);
-        if (is_edited) push_gesture(out, i, CLAP_EVENT_PARAM_GESTURE_BEGIN);
+        if (is_edited && plugin.gesture != i) push_gesture(out, i, CLAP_EVENT_PARAM_GESTURE_BEGIN);
         if (out->try_push(out, &event.header)) instrument.know(i, event.value);
-        if (is_edited) push_gesture(out, i, CLAP_EVENT_PARAM_GESTURE_END);
+        if (is_edited && plugin.held == i) plugin.gesture = i;
+        else if (is_edited && plugin.gesture != i) push_gesture(out, i, CLAP_EVENT_PARAM_GESTURE_END);
+    }
+    if (out && plugin.gesture >= 0 && plugin.gesture != plugin.held) {
+        push_gesture(out, plugin.gesture, CLAP_EVENT_PARAM_GESTURE_END);
+        plugin.gesture = -1;
     }
     const bool has_other_names = watch_names(plugin);
     if (has_moved) plugin.wants_values = true;
@@ -264,6 +269,7 @@ const clap_plugin_t *CLAP_ABI create(const clap_plugin_factory_t *, const clap_h
     made->host = host;
     made->clap = {&descriptor, made, init, destroy, activate, nothing, start, nothing, reset, process,
                   get_extension, on_main_thread};
+    made->held = made->gesture = -1;
     made->named = made->instrument.value(MAPPING);
     return &made->clap;
 }

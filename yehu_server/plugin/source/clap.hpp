@@ -21,6 +21,8 @@ struct Plugin {
     Editor *editor; /* null while there is none */
     clap_id timer;
     bool has_timer;
+    std::atomic<int> held; /* the parameter whose slider is held in the window, or -1 */
+    int gesture;           /* whose gesture has begun, as the host has heard, or -1 */
     std::atomic<double> named; /* the mapping whose keys the host knows the names of */
     std::atomic<bool> wants_names, wants_values; /* reported to the host on its main thread */
 };

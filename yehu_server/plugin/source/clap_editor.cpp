@@ -25,11 +25,21 @@ template <class Extension> const Extension *of_host(const Plugin &plugin, const 
 }
 
 /* The host hears of it with the next block, or at once where none is played. */
+void ask_to_hear(const Plugin &plugin) {
+    const auto *shown = of_host<clap_host_params_t>(plugin, CLAP_EXT_PARAMS);
+    if (shown && shown->request_flush) shown->request_flush(plugin.host);
+}
+
 void edit(void *owner, int parameter, double value) {
     Plugin &plugin = *(Plugin *)owner;
     plugin.instrument.edit(parameter, value);
-    const auto *shown = of_host<clap_host_params_t>(plugin, CLAP_EXT_PARAMS);
-    if (shown && shown->request_flush) shown->request_flush(plugin.host);
+    ask_to_hear(plugin);
+}
+
+void hold(void *owner, int parameter, bool is_held) {
+    Plugin &plugin = *(Plugin *)owner;
+    plugin.held = is_held ? parameter : -1;
+    ask_to_hear(plugin);
 }
 
 bool resize(void *owner, int width, int height) {
@@ -51,7 +61,7 @@ bool CLAP_ABI get_preferred(const clap_plugin_t *, const char **api, bool *is_fl
 bool CLAP_ABI create(const clap_plugin_t *plugin, const char *api, bool is_floating) {
     if (!is_supported(plugin, api, is_floating) || of(plugin).editor) return false;
     void *memory = malloc(sizeof(Editor));
-    if (memory) of(plugin).editor = new (memory) Editor(of(plugin).instrument, {&of(plugin), edit, resize});
+    if (memory) of(plugin).editor = new (memory) Editor(of(plugin).instrument, {&of(plugin), edit, hold, resize});
     return memory != nullptr;
 }
 

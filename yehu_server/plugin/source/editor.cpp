@@ -31,6 +31,7 @@ constexpr int CHOSEN[] = {PRESET, ROOM, ARTICULATION, MAPPING, TUNING};
 constexpr double MIN_SWING = 0.15e-3, KEPT = 0.995; /* m, and of the swing from one snapshot to the next */
 constexpr float SWING = 26, HAIR_LENGTH = 66;
 constexpr double SILENT = 1e-4, CERTAIN = 0.8, TWICE = 1.5; /* as the page has them */
+constexpr int MEAN_OF = 18; /* looks: some turns of a vibrato */
 constexpr int PERCENTS[] = {75, 100, 125, 150, 200, 250, 300};
 
 /* The string's motion, from what the ear hears, and its colour. */
@@ -113,6 +114,11 @@ void Editor::set(int slider, double value) {
     if (value != instrument.value(SLID[slider])) host.edit(host.owner, SLID[slider], value);
 }
 
+void Editor::release() {
+    if (held >= 0) host.hold(host.owner, SLID[held], false);
+    held = -1;
+}
+
 /* To where the mouse is. */
 void Editor::drag(int px, int) {
     if (held < 0) return;
@@ -125,10 +131,11 @@ void Editor::press(int px, int py) {
     const int chooser = chooser_at(x, y), slider = slider_at(x, y);
     const bool is_double = slider >= 0 && slider == pressed && ticks - pressed_at < DOUBLE_TICKS;
     end_typing(!is_double);
-    held = -1, pressed = is_double ? -1 : slider, pressed_at = ticks;
+    release(); /* which may not have been heard of */
+    pressed = is_double ? -1 : slider, pressed_at = ticks;
     if (is_double) set(slider, instrument.all().usual(SLID[slider]));
     else if (slider >= 0 && fmodf(y - SLIDERS_Y, SLIDER_HEIGHT) < WORDS_HEIGHT) focus_on(CHOOSERS + slider), begin_typing();
-    else if (slider >= 0) held = slider, drag(px, py);
+    else if (slider >= 0) held = slider, host.hold(host.owner, SLID[slider], true), drag(px, py);
     else if (chooser >= 0) {
         const float from = x - CHOOSERS_X[chooser], width = chooser_width(chooser);
         const bool is_name = from > ARROW && from < width - ARROW;
@@ -261,6 +268,11 @@ bool Editor::follow() {
     swing = (float)fmax(MIN_SWING, KEPT * swing);
     for (int string = 0; string < STRINGS; string++)
         for (int i = 0; i < POINTS; i++) shapes[string][latest][i] = (float)seen.shapes[string][i];
+    const int key = seen.pitch == seen.pitch ? (int)floor(seen.pitch + 0.5) : -1;
+    const double now = 100.0 * (seen.pitch - key) + (seen.certainty >= CERTAIN ? seen.error : 0.0);
+    if (key != sounding) sounding = key, looks = 0;
+    if (looks < MEAN_OF) looks++;
+    bent = looks > 1 ? bent + (now - bent) / looks : now;
     return true;
 }
 
@@ -326,10 +338,8 @@ void Editor::draw_gauges() {
     char text[32];
     uint32_t colour;
     const char *regime = regime_of(seen, most, &colour);
-    if (seen.pitch == seen.pitch && seen.frame > 0) {
-        const int key = (int)floor(seen.pitch + 0.5);
-        const double bent = 100.0 * (seen.pitch - key) + (seen.certainty >= CERTAIN ? seen.error : 0.0);
-        snprintf(text, sizeof text, "%s%d", names[(key % 12 + 12) % 12], key / 12 - 1);
+    if (sounding >= 0) {
+        snprintf(text, sizeof text, "%s%d", names[sounding % 12], sounding / 12 - 1);
         const float wide = canvas.text(PANEL_X, 62, 42, text, INK);
         snprintf(text, sizeof text, "%+d ct", (int)floor(bent + 0.5));
         canvas.text(PANEL_X + wide + 4, 62, 15, text, SOFT);

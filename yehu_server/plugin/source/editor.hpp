@@ -15,6 +15,7 @@ namespace yehu {
 struct EditorHost {
     void *owner;
     void (*edit)(void *owner, int parameter, double value);
+    void (*hold)(void *owner, int parameter, bool is_held); /* edits between the two are of one gesture */
     bool (*resize)(void *owner, int width, int height); /* ask for it; the host may set the size */
 };
 
@@ -25,7 +26,7 @@ public:
 
     Editor(const Instrument &instrument, const EditorHost &host) : instrument(instrument), host(host) {}
     bool open(uintptr_t parent);
-    void close() { window.close(); }
+    void close() { release(), window.close(); }
     void show(bool is_shown) { window.show(is_shown); }
     uintptr_t handle() const { return window.handle(); }
     int file() const { return window.file(); }
@@ -39,6 +40,7 @@ public:
     void tick();
     void press(int x, int y);
     void drag(int x, int y);
+    void release();
     void turn(int x, int y, int steps);
     void key(Key key);
     void type(char letter);
@@ -83,6 +85,8 @@ private:
     float shapes[STRINGS][SHAPES][POINTS] = {}; /* m; the latest at `latest` */
     int latest = 0;
     float swing = 0.0f; /* m, the greatest of late */
+    int sounding = -1, looks = 0; /* key, and how many of late are in: */
+    double bent = 0.0;            /* cents, the mean, which follows no vibrato */
 };
 
 } /* namespace yehu */

@@ -139,6 +139,7 @@ struct Ui {
     LV2UI_Write_Function write;
     LV2UI_Controller controller;
     const LV2UI_Resize *resize;
+    const LV2UI_Touch *touch;
     Editor editor;
 };
 
@@ -152,6 +153,11 @@ void edit(void *owner, int parameter, double value) {
     }
 }
 
+void hold(void *owner, int parameter, bool is_held) {
+    const Ui &ui = *(Ui *)owner;
+    if (ui.touch) ui.touch->touch(ui.touch->handle, (uint32_t)(FIRST + parameter - SETS), is_held);
+}
+
 bool resize(void *owner, int width, int height) {
     const Ui &ui = *(Ui *)owner;
     return ui.resize && ui.resize->ui_resize(ui.resize->handle, width, height) == 0;
@@ -162,14 +168,16 @@ LV2UI_Handle open_ui(const LV2UI_Descriptor *, const char *, const char *, LV2UI
     void *parent = nullptr;
     Plugin *plugin = nullptr;
     const LV2UI_Resize *resizes = nullptr;
+    const LV2UI_Touch *touch = nullptr;
     for (; features && *features; features++) {
         if (!strcmp((*features)->URI, LV2_UI__parent)) parent = (*features)->data;
         if (!strcmp((*features)->URI, LV2_INSTANCE_ACCESS_URI)) plugin = (Plugin *)(*features)->data;
+        if (!strcmp((*features)->URI, LV2_UI__touch)) touch = (const LV2UI_Touch *)(*features)->data;
         if (!strcmp((*features)->URI, LV2_UI__resize)) resizes = (const LV2UI_Resize *)(*features)->data;
     }
     void *memory = parent && plugin ? malloc(sizeof(Ui)) : nullptr;
     if (!memory) return nullptr;
-    Ui *made = new (memory) Ui{&plugin->instrument, write, controller, resizes, {plugin->instrument, {memory, edit, resize}}};
+    Ui *made = new (memory) Ui{&plugin->instrument, write, controller, resizes, touch, {plugin->instrument, {memory, edit, hold, resize}}};
     if (!made->editor.open((uintptr_t)parent)) return made->~Ui(), free(memory), nullptr;
     if (resizes) resizes->ui_resize(resizes->handle, made->editor.width(), made->editor.height());
     *widget = (LV2UI_Widget)made->editor.handle();

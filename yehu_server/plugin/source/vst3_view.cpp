@@ -21,6 +21,7 @@ struct View {
     Vst3 *plugin;
     v3_plugin_frame **frame;
     v3_run_loop **loop;
+    int held; /* the parameter whose slider is held, or -1 */
     Editor editor;
 };
 
@@ -128,15 +129,25 @@ v3_result V3_API set_scale(void *self, float scale) {
 void V3_API on_timer(void *self) { viewed<TIMER>(self).editor.tick(); }
 void V3_API on_event(void *self, int) { viewed<EVENTS>(self).editor.tick(); }
 
+void hold(void *owner, int parameter, bool is_held) {
+    View &view = *(View *)owner;
+    v3_component_handler **handler = view.plugin->handler;
+    view.held = is_held ? parameter : -1;
+    if (!handler) return;
+    if (is_held) v3_cpp_obj(handler)->begin_edit(handler, parameters[parameter].number);
+    else v3_cpp_obj(handler)->end_edit(handler, parameters[parameter].number);
+}
+
 /* The host sets the processor, too. */
 void edit(void *owner, int parameter, double value) {
+    const bool is_gesture = ((View *)owner)->held != parameter;
     Vst3 &plugin = *((View *)owner)->plugin;
     const uint32_t number = parameters[parameter].number;
     plugin.instrument.edit(parameter, value);
     if (plugin.handler) {
-        v3_cpp_obj(plugin.handler)->begin_edit(plugin.handler, number);
+        if (is_gesture) v3_cpp_obj(plugin.handler)->begin_edit(plugin.handler, number);
         v3_cpp_obj(plugin.handler)->perform_edit(plugin.handler, number, to_unit(parameter, value));
-        v3_cpp_obj(plugin.handler)->end_edit(plugin.handler, number);
+        if (is_gesture) v3_cpp_obj(plugin.handler)->end_edit(plugin.handler, number);
     }
     show(plugin, parameter, value);
 }
@@ -160,8 +171,8 @@ const v3_event_handler_cpp events = {unknown_view<EVENTS>(), {on_event}};
 v3_plugin_view **make_view(Vst3 &plugin) {
     void *memory = malloc(sizeof(View));
     if (!memory) return nullptr;
-    View *made = new (memory) View{{&view_table, &scaling, &timer, &events}, {1}, &plugin, nullptr, nullptr,
-                                   {plugin.instrument, {memory, edit, resize}}};
+    View *made = new (memory) View{{&view_table, &scaling, &timer, &events}, {1}, &plugin, nullptr, nullptr, -1,
+                                   {plugin.instrument, {memory, edit, hold, resize}}};
     plugin.references++;
     return (v3_plugin_view **)&made->tables[VIEW];
 }

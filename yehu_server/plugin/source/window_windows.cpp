@@ -118,6 +118,7 @@ LRESULT CALLBACK Window::Native::receive(HWND window, UINT message, WPARAM one, 
         native->editor->press(place.x, place.y);
         return 0;
     case WM_LBUTTONUP: ReleaseCapture(); return 0;
+    case WM_CAPTURECHANGED: native->editor->release(); return 0;
     case WM_MOUSEMOVE:
         if (one & MK_LBUTTON) native->editor->drag(place.x, place.y);
         return 0;

@@ -98,7 +98,7 @@ bool Window::open(Editor &editor, uintptr_t parent, int width, int height) {
     const xcb_screen_t *screen = x->setup_roots_iterator(setup).data;
     *made = {x, &editor, c, x->generate_id(c), x->generate_id(c), 0, screen->root_depth, nullptr,
              setup->min_keycode};
-    const uint32_t wanted = XCB_EVENT_MASK_BUTTON_PRESS | XCB_EVENT_MASK_BUTTON_1_MOTION | XCB_EVENT_MASK_KEY_PRESS;
+    const uint32_t wanted = XCB_EVENT_MASK_BUTTON_PRESS | XCB_EVENT_MASK_BUTTON_RELEASE | XCB_EVENT_MASK_BUTTON_1_MOTION | XCB_EVENT_MASK_KEY_PRESS;
     const uint32_t values[] = {0, wanted, screen->default_colormap};
     x->create_window(c, screen->root_depth, made->window, (xcb_window_t)parent, 0, 0, (uint16_t)width, (uint16_t)height,
                      0, XCB_WINDOW_CLASS_INPUT_OUTPUT, screen->root_visual,
@@ -167,6 +167,7 @@ void Window::poll() {
             native->x->set_input_focus(native->connection, XCB_INPUT_FOCUS_PARENT, native->window, press->time);
             native->editor->press(press->event_x, press->event_y);
         }
+        if (kind == XCB_BUTTON_RELEASE && press->detail == LEFT_BUTTON) native->editor->release();
         if (kind == XCB_MOTION_NOTIFY) native->editor->drag(press->event_x, press->event_y);
         if (kind == XCB_BUTTON_PRESS && (press->detail == WHEEL_UP || press->detail == WHEEL_DOWN))
             native->editor->turn(press->event_x, press->event_y, press->detail == WHEEL_UP ? -1 : 1);

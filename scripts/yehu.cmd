@@ -10,7 +10,7 @@ set "same=import filecmp, sys; sys.exit(not filecmp.cmp(*sys.argv[1:], shallow=F
 "%venv%\Scripts\python.exe" -I -c "%same%" "%root%\requirements\run.lock" "%venv%\stamp-run" >nul 2>nul
 if not errorlevel 1 goto run
 
-echo yehu: setting up .venv, once 1>&2
+echo yehu: setting up .venv ^(about half a minute^), once ... 1>&2
 if not defined PYTHON set "PYTHON=python"
 "%PYTHON%" -I -m venv --clear "%venv%"
 if errorlevel 1 goto no_python

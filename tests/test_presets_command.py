@@ -65,7 +65,7 @@ def test_all_that_is_wrong_with_each_file_is_reported(command, tmp_path):
     code, out, err = command("presets", "check", first, second, right, tmp_path / "missing.toml")
     assert (code, out) == (2, f"{right}: valid, 0 values\n")
     *lines, missing = err.splitlines()
-    assert "missing.toml: No such file" in missing
+    assert "missing.toml: no such file" in missing
     assert [line.split(": ")[1] for line in lines] == [
         *(f"{first}:{number}" for number in (2, 3, 4, 6, 7, 8)),
         *(f"{second}:{number}" for number in (2, 3)),

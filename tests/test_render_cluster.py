@@ -90,7 +90,7 @@ def test_a_wrong_call_gets_one_line_and_makes_nothing(songs, refused, monkeypatc
     monkeypatch.chdir(songs)
     for words, wrong in (
         (("in", "-o", "out", "--dask", "a b"), "is not the address of a scheduler"),
-        (("in", "-o", "out", "--dask", "none.json"), "No such file"),
+        (("in", "-o", "out", "--dask", "none.json"), "no such file"),
         (("in", "-o", "out", "--dask", "x", "--jobs", "2"), "--jobs is for this machine"),
         (("in/0/0.mid", "-o", "a.wav", "--dask", "x"), "--dask is for a folder"),
     ):

@@ -320,7 +320,10 @@ def test_what_an_ensemble_file_names_must_be_there(refused, trio, tmp_path):
         ('[[part]]\nchannel = 1\n\n[[part]]\nchannel = 2\npreset = "no"\n', ":4: no preset 'no'"),
         ('[[part]]\nchannel = 1\nmapping = "no"\n', ":1: "),
         ('[[part]]\nchannel = 1\ninstrument = "no.toml"\n', ":1: "),
-        ('room = "pizzicato"\n[[part]]\nchannel = 1\n', "band.toml:1: pizzicato: not a room"),
+        (
+            'room = "pizzicato"\n[[part]]\nchannel = 1\n',
+            "band.toml:1: pizzicato: not a room (it sets ",
+        ),
     ):
         (tmp_path / "band.toml").write_text(text, encoding="utf-8")
         words = ("render", trio, "-o", tmp_path / "out.wav", "--ensemble", tmp_path / "band.toml")
@@ -333,7 +336,7 @@ def test_options_that_do_not_fit_are_refused(refused, trio, tmp_path):
         ("--by track", "--by track is for --ensemble"),
         ("--ensemble band.toml --by track", "names channels and tracks itself"),
         ("--ensemble other.mid", "name MIDI files before --ensemble"),
-        ("--ensemble missing.toml", "missing.toml: No such file"),
+        ("--ensemble missing.toml", "missing.toml: no such file"),
         ("--ensemble --set /playing/section=6", "18 players, of all parts and sections: at most"),
     ):
         assert error in refused("render", trio, "-o", tmp_path / "out.wav", *words.split())

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import re
 from pathlib import Path
 
 import mido
@@ -86,7 +87,7 @@ def test_what_is_named_wrongly_is_answered_with_what_there_is(command, tmp_path)
     out = tmp_path / "out.wav"
     tune = Path(__file__).parents[1] / "examples" / "tunes" / "twinkle.jianpu"
     for words, said in (
-        (("render", tune, "--room", "church"), "church: not a room (there are: chamber, "),
+        (("render", tune, "--room", "church"), "no room 'church' (there are: chamber, "),
         (("render", tune, "--room", "haal"), "); did you mean hall?"),
         (("render", tune, "--preset", "halll"), "); did you mean hall?"),
         (("render", tune, "--mapping", "wnd"), "); did you mean wind?"),
@@ -99,7 +100,7 @@ def test_what_is_named_wrongly_is_answered_with_what_there_is(command, tmp_path)
             "flautando: not a room (it sets /bow/noise; there are: chamber, courtyard, ",
         ),
         (("render", score), "it is text; scores in text are named .jianpu, .abc or .musicxml"),
-        (("build", "vst3"), "'vst3' is none of wasm, library, plugin, tables"),
+        (("build", "vst3"), "'vst3' is not one of wasm, library, plugin, tables"),
     ):
         code, _, err = command(*words, "-o", out)
         assert (code, said in err) == (2, True), err
@@ -153,3 +154,48 @@ def test_the_wait_for_a_calibration_is_announced_once_before_it(capsys):
             assert len(capsys.readouterr().err.splitlines()) == lines
             progress(1, 2)
         assert not capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "render none.mid -o out.wav",
+        "render none.abc -o out.wav",
+        "render TUNE -o out.wav --preset none.toml",
+        "render TUNE -o out.wav --mapping none.toml",
+        "render TUNE -o out.wav --instrument none.toml",
+        "render TUNE -o out.wav --ensemble none.toml",
+        "render TUNE -o out.wav --practice none.json",
+        "render TUNE -o out.wav --tuning none.scl",
+        "replay none.jsonl -o out.wav",
+        "score show none.mid",
+        "simulate none.json -o out.npz",
+        "mappings check none.toml",
+        "presets show none.toml",
+        "serve --config none.toml",
+    ],
+)
+def test_every_command_says_of_a_missing_file_the_same(refused, tmp_path, monkeypatch, words):
+    tune = Path(__file__).parents[1] / "examples" / "tunes" / "twinkle.jianpu"
+    monkeypatch.chdir(tmp_path)
+    (name,) = re.findall(r"none\.\w+", words)
+    said = refused(*words.replace("TUNE", str(tune)).split())
+    assert said == f"yehu-server: {name}: no such file\n"
+
+
+def test_all_that_is_wrong_in_a_file_is_told_at_once(command, tmp_path):
+    tune = Path(__file__).parents[1] / "examples" / "tunes" / "twinkle.jianpu"
+    wrong, config = tmp_path / "mine.toml", tmp_path / "serve.toml"
+    wrong.write_text('nme = "mine"\n[[bind]]\nsource = "cc 300"\ntarget = "/bow/force"\n')
+    config.write_text("rate = 1\nmapping = 'mine.toml'\nblocksize = 'x'\n")
+    for words, lines in (
+        (("render", tune, "-o", tmp_path / "out.wav", "--mapping", wrong), [1, 3, 4]),
+        (("mappings", "show", wrong), [1, 3, 4]),
+        (("serve", "--config", config), [1, 3]),
+    ):
+        code, _, err = command(*words)
+        assert code == 2
+        assert [int(each) for each in re.findall(r"\.toml:(\d+): ", err)] == lines
+    config.write_text(f"mapping = '{wrong.as_posix()}'\n")
+    code, _, err = command("serve", "--config", config)
+    assert (code, err.count(f"{config}:1: mapping: {wrong.as_posix()}:")) == (2, 3)

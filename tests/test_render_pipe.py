@@ -68,7 +68,7 @@ def test_a_full_disk_behind_the_output_is_reported(tune, tmp_path):
         done = run("render", tune, "-o", "-", *DRY, code=limit + COMMAND, stdout=full)
     assert done.returncode == 2
     assert is_one_line(done.stderr)
-    assert "standard output: cannot write: File too large" in done.stderr
+    assert "standard output: cannot write: file too large" in done.stderr
 
 
 def test_a_wrong_pipe_gets_one_line(tmp_path):

@@ -9,7 +9,12 @@ from collections.abc import Collection, Sequence
 
 
 class YehuError(Exception):
-    """Any foreseen failure: bad input, a missing device, a full disk."""
+    """Any foreseen failure: bad input, a missing device, a full disk; notes are further ones."""
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """What is wrong, and what else is, a line each."""
+        return (str(self), *getattr(self, "__notes__", ()))
 
 
 class ParameterError(YehuError):
@@ -17,11 +22,7 @@ class ParameterError(YehuError):
 
 
 class SettingsError(YehuError):
-    """A file of settings that cannot be read or is wrong; `more` are its further errors."""
-
-    def __init__(self, message: str, *more: str) -> None:
-        super().__init__(message)
-        self.more = more
+    """A file of settings that cannot be read or is wrong."""
 
 
 class MappingError(SettingsError):

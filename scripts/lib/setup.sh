@@ -63,7 +63,7 @@ setup() {
             is_set_up "$each" || rm -f "$venv/stamp-$each"
         done
         if [ "$fresh" ]; then
-            say "setting up .venv with Python $(python_version "$python"), once"
+            say "setting up .venv with Python $(python_version "$python") (about half a minute), once ..."
             empty_venv
             logged "$python" -I -m venv --without-pip --prompt yehu "$venv"
         elif is_set_up run; then

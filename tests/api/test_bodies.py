@@ -72,7 +72,7 @@ def test_a_fit_is_made_in_a_process_with_one_thread_and_what_it_finds_is_the_sam
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: subprocess.CompletedProcess((), -9))
     refused("ended with code -9", yehu.body.fit, measured)
     monkeypatch.setattr(subprocess, "run", lambda *_, **__: open("/no/such"))  # noqa: SIM115, PTH123
-    refused("cannot be started: No such file", yehu.body.fit, measured)
+    refused("cannot be started: no such file", yehu.body.fit, measured)
 
 
 def test_what_is_wrong_is_reported_in_one_line(refused):

@@ -243,7 +243,10 @@ def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
         return capsys.readouterr().err
 
     warm_up()
-    for more, missing in (({}, advance), (COMPILED, advance_with_ledger)):
+    for more, missing, line in (
+        ({}, advance, "compiling the instrument for this machine (about a minute), once ..."),
+        (COMPILED, advance_with_ledger, "compiling what else is needed (some seconds), once ..."),
+    ):
         assert warned(more) == ""
         with monkeypatch.context() as patched:
             patched.setattr(machine_code, "loaded", cache(lambda *_: {}))
@@ -251,7 +254,7 @@ def test_commands_tell_that_something_is_compiled(monkeypatch, capsys):
             patched.setattr(
                 Native, "is_cached", property(lambda self, missing=missing: self is not missing)
             )
-            assert "compiling for this machine, once, in about a minute" in warned(more)
+            assert warned(more) == f"yehu-server: {line}\n"
 
 
 @pytest.mark.slow

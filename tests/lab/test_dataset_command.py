@@ -231,7 +231,7 @@ def test_a_wrong_call_gets_one_line_and_makes_nothing(refused, tmp_path, monkeyp
     (tmp_path / "full" / "mine").touch()
     (tmp_path / "file").touch()
     for words, wrong in (
-        ("none.toml -o out", "none.toml: No such file"),
+        ("none.toml -o out", "none.toml: no such file"),
         ("bad.toml -o out", "bad.toml: "),
         ("d.toml -o full", "is not empty, and is not a data set"),
         ("d.toml -o file", "is a file; name a folder"),

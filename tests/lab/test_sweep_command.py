@@ -96,9 +96,9 @@ def test_a_wrong_call_is_reported_in_a_line_before_anything_runs(gesture, study,
     refined = tmp_path / "refined.toml"
     refined.write_text(STUDY + '[refine]\naxes = ["force"]\nlevels = 1\n')
     for words, wrong in (
-        ((gesture, "--vary", "bow_force=99"), "bow_force: 99.0 is not within"),
-        ((gesture, "--vary", "bow_farce=1"), "bow_farce: unknown entry"),
-        ((gesture, "--vary", "bow_force=1:2"), "expected numbers"),
+        ((gesture, "--vary", "bow_force=99"), "--vary: bow_force: 99.0 is not within"),
+        ((gesture, "--vary", "bow_farce=1"), "yehu-server: --vary: bow_farce: unknown entry"),
+        ((gesture, "--vary", "bow_force=1:2"), "--vary bow_force=1:2: expected numbers"),
         ((gesture,), "nothing is varied"),
         ((refined, "--signals", tmp_path / "runs"), "a study with [refine] keeps no signals"),
         ((study, "--signals", study), "File exists"),
@@ -151,7 +151,7 @@ def test_what_cannot_be_drawn_is_reported(found, tmp_path, monkeypatch, refused)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.png").write_text("mine")
     for words, wrong in (
-        (("none.npz",), "none.npz: No such file"),
+        (("none.npz",), "none.npz: no such file"),
         ((found, "-o", "out.gif"), "name a picture .png, or a page .html"),
         ((found, "--column", "pitch"), "unknown column 'pitch'"),
         ((found, "-o", found), "name a picture"),

@@ -146,7 +146,7 @@ def test_an_error_names_its_line(subtests, read):
             assert old in FULL
             with pytest.raises(MappingError) as caught:
                 read(FULL.replace(old, new, 1))
-            lines = (str(caught.value), *caught.value.more)
+            lines = caught.value.lines
             assert any(f"mine.toml:{error}" in line for line in lines)
             assert all(line.isprintable() for line in lines)
 
@@ -157,11 +157,11 @@ def test_all_errors_of_a_file_are_reported_in_the_order_of_its_lines_unless_ther
     wrong = FULL.replace("0.9]", "9]").replace("cc 1/33", "cc 1/34").replace("= 50", "= -1")
     with pytest.raises(MappingError) as caught:
         read(wrong.replace('name = "mine"', "mpe = 2"))
-    lines = [line.partition("mine.toml:")[2] for line in (str(caught.value), *caught.value.more)]
+    lines = [line.partition("mine.toml:")[2] for line in caught.value.lines]
     assert [line.split(":")[0] for line in lines] == ["2", "8", "10", "22"]
     with pytest.raises(MappingError) as caught:
         read(BIND.replace("pressure", "presure") * 200)
-    assert len(caught.value.more) == MAX_ERRORS - 1
+    assert len(caught.value.lines) == MAX_ERRORS
 
 
 # ---------------------------------------------------------------- bases

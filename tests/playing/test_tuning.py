@@ -5,8 +5,12 @@ from pathlib import Path
 
 import pytest
 
+from yehu_server import cli
+from yehu_server.cli.config import parse
+from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.errors import ParameterError
 from yehu_server.playing.tuning import EQUAL, Tuning, read_tuning
+from yehu_server.scores.reading import ReadOptions
 
 TWELVE = [f"{100 * step}.0" for step in range(1, 12)] + ["2/1"]
 MAJOR = ["9/8", "5/4", "4/3", "3/2", "5/3", "15/8", "2"]
@@ -232,11 +236,21 @@ def test_what_is_no_text_and_pitches_no_number_can_hold_are_refused(read):
         read(scl("200000.0"))
 
 
+def test_a_transposed_tuning_and_what_scores_are_fitted_to():
+    words = ["render", "a.mid", "-o", "a.wav", "--transpose=-5"]
+    playing = playing_options_of(parse(words, cli._parser()))
+    assert [playing.tuning.pitch(key, 440.0) for key in (70, 60.5)] == [65.0, 55.5]
+    assert ReadOptions.by(playing, all_parts=False).within.ends == (70, 94)
+    scale = playing_options_of(parse([*words, "--tuning=chaozhou-seven-equal"], cli._parser()))
+    plain = read_tuning(Path("chaozhou-seven-equal"))
+    assert scale.tuning.pitch(70, 440.0) == plain.pitch(70, 440.0) - 5.0
+
+
 def test_a_file_that_cannot_be_read_is_named(tmp_path):
     for path, says in [
-        (tmp_path / "none.scl", "No such file"),
-        (tmp_path, "directory|denied"),
-        (tmp_path / "a\0b", "null"),
+        (tmp_path / "none.scl", "no such file"),
+        (tmp_path, "folder|denied"),
+        (tmp_path / "a\0b", "no such file"),
     ]:
         with pytest.raises(ParameterError, match=says):
             read_tuning(path)

@@ -216,7 +216,7 @@ def test_a_file_that_is_no_schedulers_is_refused(tmp_path):
         (tmp_path / "a.json").write_text(text)
         with pytest.raises(YehuError, match=r"a\.json: |scheduler"):
             scheduler_address(str(tmp_path / "a.json"))
-    with pytest.raises(YehuError, match="No such file"):
+    with pytest.raises(YehuError, match="no such file"):
         scheduler_address(str(tmp_path / "none.json"))
 
 

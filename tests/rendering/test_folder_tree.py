@@ -83,4 +83,4 @@ def test_a_folder_that_cannot_be_read_is_a_problem(tmp_path, made, monkeypatch):
     monkeypatch.setattr(os, "scandir", denied)
     found = tree_of(tmp_path / "in", tmp_path / "out", ".wav")
     assert [entry.name for entry in found.entries] == ["a.mid"]
-    assert found.problems == (("x", "cannot be read: Permission denied"),)
+    assert found.problems == (("x", "permission denied"),)

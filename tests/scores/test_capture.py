@@ -212,7 +212,7 @@ def test_what_cannot_be_read_or_written_is_an_error_in_one_line(tmp_path, plain,
     for path, reason in (
         (out_of_order, "order"),
         (rests, "too many"),
-        (tmp_path / "none", "No such file"),
+        (tmp_path / "none", "no such file"),
     ):
         with pytest.raises(ScoreError, match=reason):
             read_capture(path)

@@ -237,7 +237,7 @@ def test_what_cannot_be_read_is_refused_with_its_place(subtests):
 def test_errors_name_the_file(tmp_path):
     for name, text, reason in [
         ("empty", b"", "is empty"),
-        ("none", None, "cannot be read"),
+        ("none", None, "no such file"),
         ("large", b"1 " * MAX_BYTES, "larger than 1 MiB"),
         ("wrong", b"1 }", "line 1, column 3"),
     ]:

@@ -524,7 +524,7 @@ def test_a_file_that_is_no_score_is_refused_in_one_line(subtests, read, monkeypa
 
 
 def test_a_missing_file_is_named_and_a_document_type_not_fetched(read, tmp_path):
-    with pytest.raises(ScoreError, match=r"none\.mxl: cannot be read \(no such file"):
+    with pytest.raises(ScoreError, match=r"none\.mxl: no such file"):
         read_musicxml(tmp_path / "none.mxl")
     text = score(FOUR, before='<!DOCTYPE score-partwise SYSTEM "http://127.0.0.1:1/x.dtd">')
     assert read(text).parts[0].notes

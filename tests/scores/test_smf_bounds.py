@@ -26,8 +26,8 @@ def read(tmp_path: Path) -> Callable[[bytes], Score]:
 
 def test_a_path_that_is_no_file_is_refused_in_a_printable_line(tmp_path):
     for path, reason in [
-        (tmp_path / "gone.mid", r"gone\.mid: cannot be read \(no such file"),
-        (str(tmp_path), r"cannot be read \((is a directory|permission denied)\)"),
+        (tmp_path / "gone.mid", r"gone\.mid: no such file"),
+        (str(tmp_path), r"(is a folder|permission denied)"),
         *((name, "") for name in ("two\nlines.mid", "stray\udcff.mid", "nul\0.mid")),
     ]:
         with pytest.raises(ScoreError, match=reason or None) as refusal:
@@ -43,7 +43,7 @@ def test_a_file_one_may_not_read_is_refused(tmp_path):
     path = tmp_path / "secret.mid"
     path.write_bytes(midi(on(0, 60) + END))
     path.chmod(0)
-    with pytest.raises(ScoreError, match=r"secret\.mid: cannot be read \(permission denied\)"):
+    with pytest.raises(ScoreError, match=r"secret\.mid: permission denied"):
         read_score(path)
 
 

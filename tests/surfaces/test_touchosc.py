@@ -5,7 +5,7 @@ import re
 import pytest
 from surface_readers import READERS, sent, start
 
-from yehu_server.params.table import BY_ADDRESS
+from yehu_server.params.table import BY_ADDRESS, offered
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.surfaces import common_layout
 
@@ -17,7 +17,7 @@ def document():
 
 def test_a_fader_sends_its_value_and_takes_what_it_receives_without_sending_it(document):
     for fader in document.find_all(type="FADER"):
-        param = BY_ADDRESS[fader.get("tag")]
+        param = offered(BY_ADDRESS[fader.get("tag")])
         (message,) = fader.messages
         assert message.receive
         assert not message.feedback

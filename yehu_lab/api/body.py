@@ -154,7 +154,7 @@ def fit(
     """
     if not isinstance(measurement, Measurement):
         kind = type(measurement).__name__
-        raise ParameterError(f"measurement: expected that of `read` or `average`, not {kind}")
+        raise ParameterError(f"measurement: expected that of `read` or `average`, got {kind}")
     if band_hz is not None:
         lo, hi = (number(hz, "band_hz", 0.0, HIGHEST_HZ) for hz in band_hz)
         band_hz = lo, hi

@@ -86,11 +86,11 @@ def _axes(vary: Any) -> dict[str, list[float]]:
     axes = {}
     for name, given in vary.items():
         if not isinstance(name, str) or not all(name.split(".")):
-            raise ParameterError(f"vary: {name!r}: expected a name, such as 'bow_force'")
+            raise ParameterError(f"vary: expected names, such as 'bow_force', got {name!r}")
         try:
             values = [number(value, name) for value in given]
         except TypeError:
-            raise ParameterError(f"{name}: expected a list of numbers, not {given!r}") from None
+            raise ParameterError(f"{name}: expected a list of numbers, got {given!r}") from None
         if not values:
             raise ParameterError(f"{name}: there are no values")
         axes[name] = values

@@ -191,7 +191,7 @@ def read_fit(path: Path) -> Fit:
     """
     if path.suffix.lower() == ".toml":
         data = _document(path).toml().data
-        kind = looks_like(data)
+        kind = looks_like(data, "an instrument file")
         if ("base" not in data or kind) and data.keys().isdisjoint(vars(Quantities())):
             raise MeasurementError(f"{path}: is not an instrument or body file{kind}")
         named = data.get("body")

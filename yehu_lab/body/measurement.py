@@ -77,7 +77,7 @@ def read(
         Where a file cannot be read, or cannot be what it is said to be.
     """
     if kind is not None and kind not in (*KINDS, RADIATION):
-        raise MeasurementError(f"kind: {kind!r} is none of {', '.join((*KINDS, RADIATION))}")
+        raise MeasurementError(f"kind: {kind!r} is not one of {', '.join((*KINDS, RADIATION))}")
     if any(isinstance(each, str | os.PathLike) for each in (paths, radiation)):
         raise MeasurementError("give a list of paths, such as ['tap1.wav', 'tap2.wav']")
     try:

@@ -61,14 +61,14 @@ def spread_axis(name: str, first: float, last: float, steps: int, spread: str) -
 
 
 def axis_of(text: str) -> Axis:
-    """Read ``NAME=V1,V2,...``, ``NAME=FROM:TO:STEPS`` or ``NAME=FROM:TO:STEPS:log``.
+    """Read --vary: ``NAME=V1,V2,...``, ``NAME=FROM:TO:STEPS`` or ``NAME=FROM:TO:STEPS:log``.
 
     Raises ParameterError where the text has another form.
     """
     name, equals, values = (part.strip() for part in text.partition("="))
     if not equals or not all(name.split(".")):
         raise ParameterError(
-            f"{text!r}: expected NAME=V1,V2,... or NAME=FROM:TO:STEPS or NAME=FROM:TO:STEPS:log"
+            f"--vary {text}: expected NAME=V1,V2,... or NAME=FROM:TO:STEPS, or with :log after it"
         )
     parts = values.split(":")
     try:
@@ -77,9 +77,9 @@ def axis_of(text: str) -> Axis:
             return spread_axis(name, float(parts[0]), float(parts[1]), int(parts[2]), spread)
         return Axis(name, tuple(_value(value) for value in values.split(",")))
     except ParameterError as error:
-        raise ParameterError(f"{name}: {error}") from error
+        raise ParameterError(f"--vary {text}: {error}") from error
     except ValueError:
-        raise ParameterError(f"{text!r}: expected numbers after {name}=") from None
+        raise ParameterError(f"--vary {text}: expected numbers after {name}=") from None
 
 
 def _value(text: str) -> Value:

@@ -5,7 +5,7 @@ docs/sweep.md describes its file.
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -83,7 +83,8 @@ def read_study(path: Path, vary: Sequence[Axis] = (), instrument: Path | None = 
             data = {**data, "gesture": on_instrument(gesture or {}, instrument)}
         elif "gesture" not in data:
             data = on_instrument(data, instrument)
-    return study_of(Fields(with_axes(data, vary), document), path.parent)
+    options = [axis.name for axis in vary]
+    return study_of(Fields(with_axes(data, vary), document), path.parent, options)
 
 
 def _gesture(name: str, folder: Path) -> Mapping[str, Any]:
@@ -101,11 +102,13 @@ def with_axes(data: Mapping[str, Any], axes: Sequence[Axis]) -> dict[str, Any]:
     return {**data, "vary": vary}
 
 
-def study_of(data: Any, folder: Path = Path()) -> Study:
+def study_of(data: Any, folder: Path = Path(), options: Collection[str] = ()) -> Study:
     """Build a study from the data of its file.
 
     It has the contents of a gesture file, where it has a gesture; files that it names, such as a
     body, are searched in a folder. Raises ParameterError where an entry is wrong.
+
+    `options`: the axes that come from --vary, for errors.
     """
     table = Fields.of(data)
     table.refuse_others(*KNOWN)
@@ -124,6 +127,9 @@ def study_of(data: Any, folder: Path = Path()) -> Study:
             raise ParameterError(f"{study.coarse} strokes are more than {MAX_STROKES}")
         if math.prod(study.shape) > MAX_POINTS:
             raise ParameterError("the finest grid has too many points")
+    with table.at("vary"):
+        bow.check([axis for axis in fine if axis.name not in options])
+    with Fields({}, Document("--vary")).at():
         bow.check(fine)
     return study
 

@@ -26,7 +26,7 @@ from yehu_server.compile.cache_folder import OTHERS, data_folder
 from yehu_server.errors import OutputError, YehuError
 from yehu_server.system.files import LIBRARY, linker_options, may_others_write
 from yehu_server.util import __version__
-from yehu_server.util.files import write_bytes
+from yehu_server.util.files import error_reason, write_bytes
 from yehu_server.util.hints import install_command
 from yehu_server.util.processes import machine_lock, python_command
 
@@ -147,7 +147,7 @@ def build_here(what: str, folder: Path, rates: Sequence[float]) -> list[Path]:
                 write_bytes(folder / HEADER_FILE, text.encode()),
             ]
     except OSError as error:
-        raise OutputError(f"{folder}: {error.strerror}") from error
+        raise OutputError(f"{folder}: {error_reason(error)}") from error
 
 
 def compiled(functions: Sequence[Any], target: Target) -> bytes:
@@ -178,7 +178,7 @@ def page_module() -> Path:
     with machine_lock(data_folder(), "page"):  # who waits finds it then
         if found := _found(folder):
             return found
-        log.warning("compiling the instrument for pages; it takes a minute, once")
+        log.warning("compiling the instrument for pages (about a minute), once ...")
         return build("wasm", folder)[0]
 
 

@@ -5,12 +5,12 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from numbers import Real
+from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
-from yehu_server.compile.jit import IS_PLAIN, Native
-from yehu_server.core.engine.warming import CALLED, COMPILING, warm_up
+from yehu_server.compile.jit import Native
+from yehu_server.core.engine.warming import CALLED, warm_up, what_compiles
 from yehu_server.core.physics.default_quantities import Body, Quantities, override, read_quantities
 from yehu_server.core.physics.grid import MAX_RATE, MIN_RATE
 from yehu_server.errors import ParameterError
@@ -29,8 +29,9 @@ def get_ready(functions: Sequence[Native] = CALLED) -> None:
 
     By default those that playing needs; others are compiled at their first use.
     """
-    if not IS_PLAIN and not all(function.is_ready for function in functions):
-        log.warning(COMPILING)
+    what = what_compiles(functions)
+    if what is not None:
+        log.warning("%s, once ...", what)
     if functions is CALLED:
         warm_up()
 
@@ -52,7 +53,7 @@ def number(
 ) -> float:
     """Return a finite number within a range, also one of NumPy; raises ParameterError."""
     if isinstance(value, Real) and not isinstance(value, bool):
-        value = float(value)
+        value = int(value) if isinstance(value, Integral) else float(value)
     try:
         return values.number(value, lo, hi, unit)
     except ParameterError as error:
@@ -68,7 +69,7 @@ def whole(value: Any, name: str, lo: float, hi: float) -> int:
     """Return a whole number, also one of NumPy; see `number`."""
     found = number(value, name, lo, hi)
     if found != int(found):
-        raise ParameterError(f"{name}: expected a whole number, got {value!r}")
+        raise ParameterError(f"{name}: expected a whole number, got {values.brief(value)}")
     return int(found)
 
 
@@ -78,7 +79,8 @@ def setting(address: Any, value: Any) -> tuple[str, float]:
     Raises ParameterError.
     """
     if not isinstance(address, str):
-        raise ParameterError(f"{address!r}: expected an address, such as '/playing/vibrato'")
+        given = values.brief(address)
+        raise ParameterError(f"address: expected one such as '/playing/vibrato', got {given}")
     param = find(address)
     if isinstance(value, str):
         return address, named(param, value)
@@ -118,7 +120,7 @@ def quantities_of(instrument: InstrumentLike | None) -> Quantities:
 def name_of(value: Any, what: str) -> str:
     """Return a name or a path as text; raises ParameterError where it is neither."""
     if not isinstance(value, str | os.PathLike):
-        raise ParameterError(f"{what}: expected a name or a path, not {value!r}")
+        raise ParameterError(f"{what}: expected a name or a path, got {values.brief(value)}")
     return os.fspath(value)
 
 

@@ -1,9 +1,7 @@
 """Notes and pitches as users write them; notes made a score."""
 
-import math
 import re
 from collections.abc import Iterable
-from numbers import Real
 from typing import Any, NamedTuple
 
 import mido
@@ -17,19 +15,21 @@ from yehu_server.playing.stringing import range_text
 from yehu_server.scores.events import BEND, Events, ScoreEvent, Setting
 from yehu_server.scores.score import MAX_DURATION_H, Score
 from yehu_server.scores.written.layout import SEMITONES
+from yehu_server.util.values import brief
 
 ACCIDENTALS = {"#": 1, "♯": 1, "b": -1, "♭": -1}
 _NAME = re.compile(r"([A-Ga-g])([#♯b♭]*)(-?\d{1,2})([+-]\d{1,3}(?:\.\d+)?)?")
 HIGHEST_KEY = 127.0
 
 
-def pitch_of(note: str | float) -> float:
+def pitch_of(note: str | float, what: str = "note") -> float:
     """Return the pitch of a note as a fractional MIDI note.
 
     Raises ParameterError where it is neither, or not within 0 to 127.
 
     `note`: a name such as ``"A4"``, ``"Bb4"`` or ``"F#5+25"`` (cents), where A4 is MIDI note 69; or
     a MIDI note, which may be fractional.
+    `what`: its name in errors.
 
     Examples
     --------
@@ -39,17 +39,12 @@ def pitch_of(note: str | float) -> float:
     if isinstance(note, str):
         found = _NAME.fullmatch(note.strip())
         if found is None:
-            raise ParameterError(f"{note!r}: expected the name of a note, such as A4 or F#5")
+            raise ParameterError(f"{what}: expected a name such as 'A4' or 'F#5', got {note!r}")
         letter, signs, octave, cents = found.groups()
         pitch = 12.0 * (int(octave) + 1) + SEMITONES[letter.upper()]
         pitch += sum(ACCIDENTALS[sign] for sign in signs) + 0.01 * float(cents or 0.0)
-    elif isinstance(note, Real) and not isinstance(note, bool):
-        pitch = float(note)
-    else:
-        raise ParameterError(f"{note!r}: expected a note, such as 'A4' or 69")
-    if not math.isfinite(pitch) or not 0.0 <= pitch <= HIGHEST_KEY:
-        raise ParameterError(f"{note}: not within MIDI's notes, 0 to {HIGHEST_KEY:g}")
-    return pitch
+        note = pitch
+    return number(note, what, 0.0, HIGHEST_KEY)
 
 
 def playable(note: str | float, notes: NoteRange = YEHU) -> float:
@@ -61,7 +56,7 @@ def playable(note: str | float, notes: NoteRange = YEHU) -> float:
     lowest, highest = notes.ends
     if not lowest - OPEN_WITHIN < pitch < highest + OPEN_WITHIN:
         ends = f"{range_text(notes)} ({lowest} to {highest})"
-        raise ParameterError(f"{note}: the instrument plays {ends}")
+        raise ParameterError(f"note: {note} is not within {ends}, which the instrument has")
     return pitch
 
 
@@ -106,7 +101,7 @@ def score_of(notes: Iterable[Any] | Any) -> Score:
         rows = list(notes)
     except TypeError:
         kind = type(notes).__name__
-        raise ParameterError(f"score: expected the path of a file, or notes, not {kind}") from None
+        raise ParameterError(f"score: expected the path of a file, or notes, got {kind}") from None
     found = [_note(place, row) for place, row in enumerate(rows)]
     if not found:
         raise ScoreError("there are no notes")
@@ -136,13 +131,13 @@ def score_of(notes: Iterable[Any] | Any) -> Score:
 def _note(place: int, row: Any) -> tuple[float, float, float, int]:
     """Check a row."""
     if isinstance(row, str) or not isinstance(row, tuple | list | np.ndarray):
-        raise ParameterError(f"note {place}: expected pitch, start and duration, not {row!r}")
+        raise ParameterError(f"note {place}: expected pitch, start and duration, got {brief(row)}")
     if not 3 <= len(row) <= len(Note._fields):
         raise ParameterError(f"note {place}: expected pitch, start, duration, and maybe velocity")
     try:
         note = Note(*row)
         return (
-            pitch_of(note.pitch),
+            pitch_of(note.pitch, "pitch"),
             number(note.start, "start", 0.0, LONGEST_S),
             number(note.duration, "duration", 1e-3, LONGEST_S),
             round(number(note.velocity, "velocity", 1.0, 127.0)),

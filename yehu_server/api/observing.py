@@ -48,7 +48,7 @@ def curves_of(controls: Mapping[str, ArrayLike] | None) -> list[Curve]:
         except (TypeError, ValueError):
             raise ParameterError(f"{address}: expected a number or an array of numbers") from None
         if values.ndim != 1 or len(values) == 0:
-            raise ParameterError(f"{address}: expected one value after another, not {values.shape}")
+            raise ParameterError(f"{address}: expected one value after another, got {values.shape}")
         for value in (values.min(), values.max()):  # NaN too
             setting(address, float(value))
         curves.append(Curve(address, values))

@@ -279,5 +279,5 @@ def _channels(channels: Any) -> frozenset[int] | None:
     if channels is None:
         return None
     if isinstance(channels, str) or not isinstance(channels, Iterable):
-        raise ParameterError(f"channels: expected numbers, such as [1, 2], not {channels!r}")
+        raise ParameterError(f"channels: expected numbers, such as [1, 2], got {channels!r}")
     return frozenset(whole(channel, "channels", 1, 16) - 1 for channel in channels)

@@ -87,7 +87,7 @@ def gesture_of(gesture: Mapping[str, Any] | PathLike | Gesture) -> Gesture:
     if isinstance(gesture, str | os.PathLike):
         return read_gesture(path_of(gesture, "gesture"))
     kind = type(gesture).__name__
-    raise ParameterError(f"gesture: expected a mapping or the path of a file, not {kind}")
+    raise ParameterError(f"gesture: expected a mapping or the path of a file, got {kind}")
 
 
 def plain_gesture(gesture: Mapping[str, Any]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from yehu_server.cli.arguments import HelpFormatter, Parser
 from yehu_server.cli.commands import all_commands, module_of
 from yehu_server.cli.config import parse
 from yehu_server.cli.render_pipe import BROKEN_PIPE
-from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn
+from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn, warn_of
 from yehu_server.errors import YehuError
 from yehu_server.system.processes import on_termination
 from yehu_server.util import __version__
@@ -55,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             os.dup2(nothing.fileno(), sys.stdout.fileno())
         return BROKEN_PIPE
     except YehuError as error:
-        warn(str(error))
+        warn_of(error)
         return 2
     except OSError as error:
         if error.errno != errno.ENOSPC:  # of standard output: errors of files name them

@@ -25,7 +25,7 @@ from yehu_server.util.files import (
     replace_none,
     shipped_folder,
 )
-from yehu_server.util.hints import command_name
+from yehu_server.util.hints import command_name, shown_path
 
 if TYPE_CHECKING:
     from yehu_server.core.physics.default_quantities import Quantities
@@ -41,13 +41,17 @@ class HelpFormatter(RawDescriptionRichHelpFormatter):
     )
 
 
-# What argparse says of a wrong choice; from Python 3.12 on without quotation marks.
 IN_FILE = "that is done in the file, before it is played"
 ELSEWHERE = {  # what players of files look for, and where it is
-    "--transpose": f"{IN_FILE}; parts are moved by octaves to fit (--range), --a4 tunes",
     **dict.fromkeys(("--from", "--start", "--end", "--to", "--tempo", "--bpm"), IN_FILE),
 }
-CHOICE = re.compile(r"argument (.*?): invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
+# What argparse says of a wrong choice; from Python 3.12 on without quotation marks.
+CHOICE = re.compile(r"invalid choice: '?(.*?)'? \(choose from (.*)\)", re.DOTALL)
+OUR_WORDS = {  # for argparse's
+    r"^argument ": "",
+    r"^the following arguments are required": "missing",
+    r"expected (?:at least )?one argument$": "needs a value",
+}
 
 
 def add_options(group: Any, table: str, /, **details: Any) -> None:
@@ -169,11 +173,20 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and exit with code 2."""
-        if wrong := CHOICE.fullmatch(message):
-            known = [*re.findall(r"[^\s',]+", wrong[3]), *self._actions_by_word]
-            near = did_you_mean(wrong[2], known)
-            message = f"{wrong[1]}: '{wrong[2]}' is none of {', '.join(known)}{near}"
-        self.exit(2, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
+        message = one_line(self.worded(message))
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+    def worded(self, message: str) -> str:
+        """An error of argparse in our words."""
+
+        def choice(wrong: re.Match[str]) -> str:
+            known = [*re.findall(r"[^\s',]+", wrong[2]), *self._actions_by_word]
+            near = did_you_mean(wrong[1], known)
+            return f"'{wrong[1]}' is not one of {', '.join(known)}{near}"
+
+        for theirs, ours in OUR_WORDS.items():
+            message = re.sub(theirs, ours, message)
+        return CHOICE.sub(choice, message)
 
 
 def add_command(
@@ -186,7 +199,7 @@ def add_command(
 
     `usage`: its name and what it does, such as ``devices: list the inputs``.
     `about`: its description and, from the first example on, what stands at the end of its help: the
-    docstring of its module. Pages named there, such as docs/osc.md, get their full path.
+    docstring of its module. Pages named there, such as docs/osc.md, get their path.
     """
     name, _, short = usage.partition(": ")
     description, example, more = (about or "").partition("\n\n  yehu-server ")
@@ -198,7 +211,7 @@ def add_command(
         name,
         help=short,
         description=" ".join(description.split()),
-        epilog=epilog.replace("docs/", f"{shipped_folder('docs')}/"),
+        epilog=epilog.replace("docs/", f"{shown_path(shipped_folder('docs'))}/"),
         formatter_class=HelpFormatter,
         allow_abbrev=False,
     )
@@ -257,8 +270,8 @@ def add_output(
     add_options(
         parser,
         f"""
-        -o --output OUT: the sound file to write{more}
-        --overwrite: replace OUT, whatever it is (default: only files that render and replay made)
+        -o --output OUT: the file to write{more}
+        --overwrite: replace OUT, whatever it is (default: only a sound file that this program made)
         """,
         output={"required": True, "type": kind},
     )

@@ -8,8 +8,7 @@ It takes a minute. For a page it needs LLVM's wasm-ld, for a library a C compile
   yehu-server build plugin -o plug-ins
   yehu-server build tables --mapping wind --preset flautando -o wind.tables
 
-build plugin makes a plug-in for music programs (docs/plugin.md). build tables writes a mapping, a
-tuning and presets to a binary file, for pages and C programs; docs/ahead.md describes how.
+docs/plugin.md is about plug-ins, docs/ahead.md about modules, libraries and tables.
 """
 
 import argparse
@@ -23,7 +22,7 @@ from yehu_server.cli.arguments import (
     add_options,
 )
 from yehu_server.cli.converters import positive, target
-from yehu_server.cli.playing_options import add_tables, table_options_of
+from yehu_server.cli.playing_options import add_controllers, add_tables, table_options_of
 from yehu_server.cli.terminal import print_result
 from yehu_server.plugin.targets import ALL, NAMES, usual
 from yehu_server.util.files import write_bytes
@@ -48,7 +47,7 @@ def add_to(commands: Any) -> None:
     )
     wasm.set_defaults(what="wasm", level=None)
     library.set_defaults(what="library")
-    plugin = add_action(actions, "plugin", _plugin, "make a plug-in for music programs")
+    plugin = add_action(actions, "plugin", _plugin, "make a plug-in for DAWs")
     add_folder(plugin)
     add_options(
         plugin,
@@ -57,6 +56,7 @@ def add_to(commands: Any) -> None:
     )
     text = "write mapping, tuning and presets to a binary file, for the C function yehu_use_tables"
     tables = add_action(actions, "tables", _tables, text)
+    add_controllers(tables)
     add_tables(tables)
     add_options(
         tables,

@@ -6,17 +6,17 @@ A package adds its own by an entry point of GROUP, which names its table of them
 # What each command is for; each is a module of this package.
 COMMANDS = {
     "serve": "play live, by MIDI and OSC",
-    "build": "compile the instrument as a plug-in, for web pages or for C programs",
+    "build": "compile the instrument: a plug-in for DAWs, a module for web pages, a C library",
     "devices": "list audio outputs, audio inputs and MIDI inputs",
-    "follow": "play the tune that a voice or an instrument has in a sound file",
+    "follow": "play the tune of a voice or an instrument in a sound file",
     "learn": "bind a knob, pedal or OSC address to a parameter of a running server",
     "mappings": "list, show, check and convert mappings: what controllers move",
-    "page": "show the instrument in a web page, which sounds without a server",
+    "page": "show the instrument as a web page, which plays without a server",
     "presets": "list, show and check presets",
-    "render": "render scores to a sound file, or a folder of them to a folder",
-    "replay": "render a captured session to a sound file",
+    "render": "render scores to a sound file, or a folder of scores to a folder",
+    "replay": "render a session that serve --capture wrote to a sound file",
     "score": "show how a score is read, or write it as MusicXML or jianpu",
-    "simulate": "run a gesture in physical units, and keep all signals as arrays",
+    "simulate": "run the model with given motions of bow and finger; keep all signals",
     "surfaces": "write control surfaces for TouchOSC, Max, Pure Data, Open Stage Control",
 }
 FIRST = "serve"  # in the help; the others follow by their names

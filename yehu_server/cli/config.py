@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from yehu_server.cli.arguments import Parser
-from yehu_server.errors import ParameterError, YehuError, did_you_mean
+from yehu_server.errors import ParameterError, did_you_mean
 from yehu_server.live.network import OSC_ADDRESS, parse_address
-from yehu_server.util.documents import Document, looks_like
+from yehu_server.util.documents import MAX_ERRORS, Document, looks_like
 from yehu_server.util.values import brief, flag
 
+CONFIG = "a config file"
 NOT_IN_FILES = {"--config": "cannot name another", "--help": "cannot ask for help"}
 MAX_VALUES = 1000  # of one option
 
@@ -42,7 +43,7 @@ def parse(argv: Sequence[str], parser: Parser) -> argparse.Namespace:
 
 
 def read_config(path: Path, command: Parser, presets: Path | None) -> argparse.Namespace:
-    """Read a file's options, checked as the command's own; ParameterError names the line.
+    """Read a file's options, checked as the command's own; ParameterError names the lines.
 
     `presets`: the folder of presets that the command line names, if it does.
     """
@@ -52,17 +53,20 @@ def read_config(path: Path, command: Parser, presets: Path | None) -> argparse.N
         try:
             command.parse_known_args(_words(command, name, value, table.data), namespace)
         except argparse.ArgumentError as error:
-            raise ParameterError(error.message) from error
+            raise ParameterError(command.worded(error.message)) from error
 
     def check(name: str, value: Any) -> None:
         for word in _words(command, name, value, table.data):
             _check(*word.partition("=")[::2], presets or getattr(namespace, "presets", None))
 
-    table = Document(path, "a TOML file").read(path).toml()
+    document = Document(path, CONFIG, most_errors=MAX_ERRORS)
+    table = document.read(path).toml()
     command.exit_on_error = False
     table.each(parse_entry)
     command.exit_on_error = True
+    document.raise_errors()
     table.each(check)
+    document.raise_errors()
     return namespace
 
 
@@ -78,10 +82,7 @@ def _check(option: str, text: str, presets: Path | None) -> None:
         "--preset": Presets(presets).find,
         "--osc": lambda text: parse_address(text, *OSC_ADDRESS),
     }
-    try:
-        readers.get(option, str)(text)
-    except YehuError as error:
-        raise ParameterError(str(error)) from error
+    readers.get(option, str)(text)
 
 
 def _words(command: Parser, name: str, value: Any, table: Mapping[str, Any]) -> list[str]:
@@ -92,7 +93,9 @@ def _words(command: Parser, name: str, value: Any, table: Mapping[str, Any]) -> 
     action = command.options.get(option)
     if action is None:
         known = [other.removeprefix("--") for other in command.options]
-        raise ParameterError(f"unknown option{did_you_mean(name, known)}{looks_like(table)}")
+        raise ParameterError(
+            f"unknown option{did_you_mean(name, known)}{looks_like(table, CONFIG)}"
+        )
     if action.nargs == 0 or (action.nargs == "?" and isinstance(value, bool)):
         if flag(value):
             return [option]

@@ -1,4 +1,4 @@
-"""Listen to a voice or one instrument in a sound file, and play what is heard.
+"""Listen to one voice or instrument in a sound file, and play its tune on the yehu.
 
   yehu-server follow hum.wav -o played.wav
   yehu-server follow hum.wav -o played.wav --preset flautando --correct 1 --keep-vibrato
@@ -6,7 +6,9 @@
   yehu-server follow hum.wav -o hum.jsonl
   yehu-server follow hum.wav -o played.flac --plot played.png
 
-This needs yehu-server[follow]. docs/follow.md describes what it hears, and how well.
+The ending of OUT says what to write: .wav or .flac the sound, .mid the notes, .jsonl all that the
+player does, for replay. This needs the extra yehu-server[follow]. docs/follow.md says how well it
+hears.
 """
 
 from __future__ import annotations
@@ -59,33 +61,39 @@ def add_to(commands: Any) -> None:
     add_options(
         parser, "recording IN: a sound file of one voice, such as WAV or FLAC", recording=Path
     )
-    add_output(parser, more=": .wav or .flac; or .mid for notes, .jsonl for a capture")
+    add_output(parser)
     add_options(
         parser,
         f"""
-        --transpose SEMITONES: transpose the recording, -60 to 60 (default: by octaves, into the
-            range)
-        --correct SHARE: pitch correction, 0 as sung to 1 in tune (default: 0)
-        --keep-vibrato: with --correct, keep vibrato and slides as they are (default: they get
-            narrower, too)
-        --style: how closely loudness and attacks follow the recording: exact, gentle (in part) or
-            even (not at all) (default: exact)
-        --max-duration HOURS: refuse a recording that lasts longer (default: {MAX_DURATION_H:g})
         --plot PNG: also draw pitch and level, as heard and as played
-        --subtype: sample format (default: 24 bits)
+        --max-duration HOURS: refuse a longer recording (default: {MAX_DURATION_H:g})
+        """,
+        max_duration={"type": hours, "default": MAX_DURATION_H},
+        plot=target,
+    )
+    add_reporting(parser)
+    add_options(
+        parser.add_argument_group("following"),
+        """
+        --transpose SEMITONES: transpose the tune, -60 to 60 (default: by octaves, into the range of
+            the instrument)
+        --correct SHARE: pitch correction, 0 (as sung) to 1 (in tune) (default: 0)
+        --keep-vibrato: correct the pitch of notes only, not their vibrato and slides
+        --style: how much of the recording's loudness and attacks is played: exact (all), gentle
+            (some) or even (none) (default: exact)
         """,
         transpose=number_within(-60.0, 60.0, "semitones"),
         correct={"type": number_within(0.0, 1.0, ""), "default": 0.0},
         style={"choices": STYLES, "default": STYLES[0]},
-        max_duration={"type": hours, "default": MAX_DURATION_H},
-        plot=target,
-        subtype={"choices": tuple(SUBTYPES)},
     )
-    sound_options.add_sound(parser)
-    sound_options.add_space(parser)
-    add_instrument(parser)
-    add_playing(parser)
-    add_reporting(parser)
+    group = parser.add_argument_group("the sound")
+    sound_options.add_sound(group)
+    add_options(group, "--subtype: sample format (default: 24)", subtype={"choices": (*SUBTYPES,)})
+    sound_options.add_space(group)
+    group = parser.add_argument_group("playing")
+    add_instrument(group)
+    add_playing(group)
+    parser.set_defaults(mapping=None, mpe=False, programs=False)  # a voice has no controllers
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@
   yehu-server learn --forget /playing/vibrato
   yehu-server learn --part 2 /playing/vibrato
 
-Start `yehu-server serve` first. Binds are saved at once, in a mapping file of your own.
+Start `yehu-server serve` first. Each binding is saved at once, in a mapping file of your own.
 """
 
 from __future__ import annotations

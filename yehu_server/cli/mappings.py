@@ -52,7 +52,7 @@ def add_to(commands: Any) -> None:
         show,
         """
         mapping NAME: a mapping's name, or a file (default: keyboard)
-        --live: the binds of a running server, with present positions and values; Ctrl-C ends
+        --live: what moves what in a running server, with positions and values; Ctrl-C ends
         """,
         mapping={"nargs": "?"},
     )
@@ -60,12 +60,12 @@ def add_to(commands: Any) -> None:
     check = add_action(actions, "check", _check, "check files and report all errors")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE", help="mappings of yours")
     convert = add_action(
-        actions, "convert", _convert, "write a mapping as a file, in the present format"
+        actions, "convert", _convert, "write a mapping as a file in today's format"
     )
     add_options(
         convert,
         """
-        mapping FILE: a file, also one with the output of show --json, or the name of a mapping
+        mapping FILE: the name of a mapping, a file, or a file with what show --json printed
         -o --output OUT: the file to write (default: print it)
         --overwrite: replace OUT if it exists, even if it is FILE
         """,

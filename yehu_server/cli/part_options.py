@@ -34,8 +34,8 @@ def add_parts(group: Any) -> None:
         group,
         f"""
         --parts N: number of players on the stage, each with an instrument, 1 to {MAX} (default: 1)
-        --part N=PORT[:CHANNEL] ...: inputs that play part N, by words of their name, or one channel
-            of them; may be repeated (default: the first input plays part 1, the second
+        --part N=PORT[:CHANNEL] ...: which MIDI inputs play part N, by words of their name, or which
+            channel of them; may be repeated (default: the first input plays part 1, the second
             part 2, ...)
         --part-mapping N=FILE ...: mapping of part N (default: that of --mapping); may be repeated
         --part-instrument N=FILE ...: instrument of part N (default: that of --instrument); may be

@@ -7,12 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from platformdirs import user_config_path
+
 from yehu_server.cli.arguments import add_options, chosen
 from yehu_server.cli.converters import number_within, whole_within
 from yehu_server.cli.terminal import warn
 from yehu_server.errors import ParameterError
 from yehu_server.params.preset_file import FIRST_LIVE
 from yehu_server.params.table import HIGHEST_A4, LOWEST_A4
+from yehu_server.util.hints import shown_path
 
 if TYPE_CHECKING:
     from yehu_server.playing.mapping import Mapping
@@ -32,9 +35,9 @@ OTHER = (
 )
 
 
-def add_playing(group: Any) -> None:
-    """Add the options of playing that serve and render share; see `playing_options_of`."""
-    add_tables(group)
+def add_playing(group: Any, usual_preset: str = "none") -> None:
+    """Add the options of playing that commands share; see `playing_options_of`."""
+    add_tables(group, usual_preset)
     add_options(
         group,
         """
@@ -42,9 +45,9 @@ def add_playing(group: Any) -> None:
             NAME.practice.json beside an instrument file NAME.toml, else the shipped one)
         --set ADDRESS=VALUE ...: hold a parameter at a value, such as /playing/bow_position=0.1 or
             articulation=trill (or 颤音); may be repeated
-        --open-strings: when to play C5 (of a yehu) on the open outer string instead of stopping
-            the inner one (default: always)
-        --seed N: seed of the random variation of the player, 0 to 65535 (default: 0)
+        --open-strings: whether the open outer string plays its note, C5 of a yehu: always, on-pitch
+            (only where it is in tune for the note) or never (default: always)
+        --seed N: seed of the player's random variation, 0 to 65535 (default: 0)
         """,
         practice=Path,
         open_strings={"choices": ("always", "on-pitch", "never"), "default": "always"},
@@ -52,19 +55,33 @@ def add_playing(group: Any) -> None:
     )
 
 
-def add_tables(group: Any) -> None:
-    """Add the options of how messages are interpreted; see `table_options_of`."""
+def add_controllers(group: Any) -> None:
+    """Add the options of what keys and controllers do; see `table_options_of`."""
     add_options(
         group,
-        f"""
+        """
         --mapping FILE: what controllers move: the name of a mapping (mine/NAME for one of yours),
             or a file (default: keyboard)
         --mpe: start with one MPE zone of 15 member channels; without --mapping, use the mapping
             named mpe
-        --preset NAME: sound to start with: the name of a preset, or a file; several with a plus,
-            such as sul-tasto+hall (default: none, but {FIRST_LIVE} for serve without --mapping or
-            --mpe); yehu-server presets list names all
         --programs: let MIDI program changes select presets (default: they are ignored)
+        --transpose SEMITONES: play all notes so much higher, or lower, -48 to 48 (default: 0)
+        """,
+        transpose={
+            "type": whole_within(-48, 48, "is not within -48 to 48 semitones"),
+            "dest": "transposed_by",
+            "default": 0,
+        },
+    )
+
+
+def add_tables(group: Any, usual_preset: str = "none") -> None:
+    """Add the options of how messages are interpreted; see `table_options_of`."""
+    add_options(
+        group,
+        f"""
+        --preset NAME: sound to start with: the name of a preset, or a file; several with a plus,
+            such as sul-tasto+hall (default: {usual_preset}); yehu-server presets list names all
         """,
     )
     add_presets_folder(group)
@@ -76,9 +93,9 @@ def add_tables(group: Any) -> None:
     add_tuning(group)
     add_options(
         group,
-        "--range: what to do with notes outside the range of the instrument, F4 to F6 of a yehu: "
-        "transpose by octaves, clamp to the nearest note, or skip "
-        "those that no octave fits, and key switches (default: transpose)",
+        "--range: what happens to notes outside the range of the instrument (of a yehu F4 to F6): "
+        "transpose moves them by octaves, clamp plays the nearest note, skip leaves them out, and "
+        "key switches (default: transpose)",
         range={"choices": ("transpose", "clamp", "skip"), "default": "transpose"},
     )
 
@@ -90,8 +107,9 @@ def add_tuning(group: Any) -> None:
         """
         --tuning FILE.scl: Scala scale, with C as its first note: a file, or the name of a shipped
             one (default: equal temperament)
-        --keyboard-map FILE.kbm: Scala keyboard map, for scales that have not twelve notes: which
-            key plays which note, at what pitch; a file, or the name of a shipped one
+        --keyboard-map FILE.kbm: Scala keyboard map: which key plays which note of the scale, and at
+            what pitch, where a scale does not have twelve notes; a file, or the name of a shipped
+            one
         """,
         tuning=Path,
         keyboard_map=Path,
@@ -104,15 +122,16 @@ def tuning_of(arguments: argparse.Namespace) -> Tuning:
 
     if arguments.keyboard_map is not None and arguments.tuning is None:
         raise ParameterError("--keyboard-map needs a scale: --tuning FILE.scl")
+    transposed_by = getattr(arguments, "transposed_by", 0)
     if arguments.tuning is None:
-        return EQUAL
+        return EQUAL.transposed(transposed_by)
     tuning = read_tuning(arguments.tuning, arguments.keyboard_map)
     if tuning.is_in_a_row:
         warn(
             f"--tuning {arguments.tuning}: keys play its notes in a row from C4 on, whatever their "
             "names: --keyboard-map says which key plays which note"
         )
-    return tuning
+    return tuning.transposed(transposed_by)
 
 
 def mapping_of(arguments: argparse.Namespace, *, is_live: bool = False) -> Mapping:
@@ -133,11 +152,9 @@ def own_presets(text: str) -> Path:
 
 def add_presets_folder(group: Any) -> None:
     """Add --presets, the folder of the user's presets."""
-    add_options(
-        group,
-        "--presets FOLDER: folder of your own presets (default: in your configuration folder)",
-        presets=own_presets,
-    )
+    usual = shown_path(user_config_path("yehu-server", appauthor=False) / "presets")
+    text = f"--presets FOLDER: folder of your own presets (default: {usual})"
+    add_options(group, text, presets=own_presets)
 
 
 def playing_options_of(arguments: argparse.Namespace, *, is_live: bool = False) -> PlayingOptions:

@@ -9,10 +9,9 @@
   yehu-server render songs -o sounds --dask tcp://10.0.0.1:8786
   yehu-server render - -o - --format raw < tune.mid > tune.f32
 
-A folder is rendered on all cores; what is up to date is left (docs/folders.md). docs/cluster.md
-is about clusters.
-Ensemble files are described in docs/ensemble.md.
-docs/midi_files.md describes how damaged MIDI files are read.
+A folder is rendered on all cores; files that are up to date stay (docs/folders.md).
+docs/ensemble.md is about ensembles, docs/midi_files.md about damaged MIDI files, docs/cluster.md
+about clusters.
 """
 
 import argparse
@@ -30,7 +29,7 @@ from yehu_server.cli.arguments import (
     add_reporting,
 )
 from yehu_server.cli.converters import channel, hours, number_within, positive, target
-from yehu_server.cli.playing_options import add_playing
+from yehu_server.cli.playing_options import add_controllers, add_playing
 from yehu_server.cli.render_one import rendered
 from yehu_server.cli.render_pipe import piped_in, quiet_pipe, score_source, sound_target
 from yehu_server.cli.sound_options import add_sound, add_stage
@@ -45,45 +44,58 @@ def add_to(commands: Any) -> None:
     parser = add_command(commands, "render", __doc__, run)
     add_options(
         parser,
-        "midi SCORE: files of MIDI, MusicXML, ABC or jianpu, or a folder; - reads standard input",
+        "midi SCORE: files of MIDI, MusicXML, ABC or jianpu, or one folder; - reads standard input",
         midi={"nargs": "+", "type": score_source},
     )
-    add_output(parser, sound_target, "; - writes standard output; of a folder, a folder")
+    add_output(parser, sound_target, "; - for standard output; for a folder of scores, a folder")
+    add_reporting(parser)
     add_options(
         parser,
         f"""
-        --format: file format (default: by the ending of OUT); raw: samples alone, for -o -
-        --subtype: sample format (default: 24 bits; float for raw)
+        --plot PNG: also draw level, pitch (as wanted and as measured) and spectrogram
+        --strict: refuse damaged MIDI files, and marks that are not understood, with exit code 1
+            (default: warn)
+        --max-duration HOURS: refuse scores that last longer in total (default: {MAX_DURATION_H:g})
+        """,
+        max_duration={"type": hours, "default": MAX_DURATION_H},
+        plot=target,
+    )
+    add_cluster(parser)
+    add_options(
+        parser.add_argument_group("the score"),
+        """
         --channel N: play only this MIDI channel, 1 to 16; may be repeated (default: those of the
             part that plays, but 10)
         --part NAME ...: play this part, by its name, the beginning of its name, or its number; may
             be repeated (default: the part that carries the tune; all, where tracks of a MIDI file
             take turns)
+        --song N: play only the N-th song of each file (default: all songs, one after another)
         --phrasing SHARE: how much the player shapes plain notes (phrases, accents, slurs, vibrato,
-            slides), 0 to 1; marks in the score stay; 0 plays exactly what is written (default: 0.5)
+            slides), 0 to 1; 0 plays exactly what is written, marks of the score stay (default: 0.5)
         --rubato SHARE: tempo flexibility within phrases and at the end, 0 to 1; 0 is strict time
             (default: the value of --phrasing)
-        --song N: play only the N-th song of each file (default: all songs, one after another)
-        --strict: refuse damaged MIDI files, and scores with marks that are not understood, with
-            exit code 1 (default: warn)
-        --max-duration HOURS: refuse scores that last longer in total (default: {MAX_DURATION_H:g})
-        --plot PNG: also draw level, intended and measured pitch, and spectrogram
         """,
-        format={"choices": (*FORMATS, "raw")},
-        subtype={"choices": tuple(SUBTYPES)},
         channel={"type": channel, "action": "append"},
         phrasing=number_within(0.0, 1.0, ""),
         rubato=number_within(0.0, 1.0, ""),
         song=positive,
-        max_duration={"type": hours, "default": MAX_DURATION_H},
-        plot=target,
     )
-    add_sound(parser)
+    group = parser.add_argument_group("the sound")
+    add_options(
+        group,
+        """
+        --format: file format (default: by the ending of OUT); raw: samples alone, for -o -
+        --subtype: sample format (default: 24 bits; float for raw)
+        """,
+        format={"choices": (*FORMATS, "raw")},
+        subtype={"choices": tuple(SUBTYPES)},
+    )
+    add_sound(group)
+    group = parser.add_argument_group("playing")
+    add_instrument(group)
+    add_controllers(group)
+    add_playing(group)
     add_stage(parser)
-    add_instrument(parser)
-    add_playing(parser)
-    add_cluster(parser)
-    add_reporting(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

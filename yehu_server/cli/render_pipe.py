@@ -55,7 +55,7 @@ def piped_in(arguments: argparse.Namespace) -> Iterator[None]:
                         raise ScoreError(f"{STDIN}: larger than {MAX_BYTES // 2**20} MiB")
                     file.write(data)
         except OSError as error:
-            raise ScoreError(f"{STDIN}: cannot be read: {error_reason(error)}") from error
+            raise ScoreError(f"{STDIN}: {error_reason(error)}") from error
         arguments.midi = [path if each == "-" else each for each in arguments.midi]
         try:
             yield

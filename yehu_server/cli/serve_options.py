@@ -8,7 +8,7 @@ from yehu_server.cli.arguments import Parser, add_options, chosen
 from yehu_server.cli.config import add_config
 from yehu_server.cli.converters import number_within, port, positive, target, whole_within, within
 from yehu_server.cli.part_options import add_parts, part_options, routes_of
-from yehu_server.cli.playing_options import add_playing
+from yehu_server.cli.playing_options import add_controllers, add_playing
 from yehu_server.cli.terminal import LEVELS
 from yehu_server.errors import ParameterError
 from yehu_server.live.network import (
@@ -21,6 +21,7 @@ from yehu_server.live.network import (
     parse_address,
 )
 from yehu_server.live.page.guests import PLAY, ROLES, Guests
+from yehu_server.params.preset_file import FIRST_LIVE
 from yehu_server.params.table import PREFIX
 from yehu_server.util.files import check_distinct
 
@@ -36,14 +37,14 @@ def add_arguments(parser: Parser) -> None:
     add_options(
         parser.add_argument_group("audio"),
         """
-        --audio-device NAME: the audio output: words of its name (yehu-server devices lists them);
-            a host API alone, such as JACK, for its default output; null for silence (default:
-            JACK's output where JACK runs, else the system's)
+        --audio-device NAME: the audio output: words of its name (yehu-server devices lists them),
+            or a host API, such as JACK, for its default output; null: no sound (default: JACK's
+            where JACK runs, else the system's)
         --rate HZ: sample rate (default: the device's)
-        --blocksize FRAMES: frames in a block; JACK keeps its own period (default: 128)
+        --blocksize FRAMES: frames in a block (buffer); JACK keeps its own period (default: 128)
         --latency low|high|SECONDS: latency to request from the device (default: low)
-        --channels N: number of output channels, left and right in turn; 1: mono (default: 2, or as
-            many as the device has)
+        --channels N: number of output channels, left and right in turn; 1 is mono (default: 2, or
+            what the device has)
         --follow NAME: follow a voice at an audio input, and play what it sings; NAME as for
             --audio-device (default: JACK's input where JACK runs, else the system's)
         --follow-transpose SEMITONES: transpose the voice (default: by octaves, so that the first
@@ -98,20 +99,21 @@ def add_arguments(parser: Parser) -> None:
             of --http plus 1, or a free one where that is taken; none with --no-http)
         --no-panel: no page
         --open: open the page in the browser
-        --lan listen|play|own: offer the page to the local network, protected by a PIN: other
-            devices may listen, play, or do all that this machine may (own) (default: play)
+        --lan listen|play|own: open the page to other devices of the local network, by a PIN: they
+            may listen, play, or do all that this machine may (own) (default: play)
         """,
         panel_port=port,
         lan={"nargs": "?", "const": PLAY, "choices": ROLES},
     )
     group = parser.add_argument_group("playing")
-    add_playing(group)
+    add_controllers(group)
+    add_playing(group, f"{FIRST_LIVE}; none with --mapping or --mpe")
     add_options(
         group,
         """
         --watch: reload the mapping when its file changes
         --jitter-buffer MS: delay incoming messages by this time, so that they keep their rhythm
-            (default: the largest block that the device asks for, and 1 ms)
+            (default: the device's largest block and 1 ms)
         """,
         jitter_buffer={"type": number_within(0.0, 1000.0, "ms"), "dest": "jitter_ms"},
     )

@@ -29,12 +29,12 @@ def add_sound(group: Any) -> None:
         group,
         """
         --rate HZ: sample rate (default: 44100)
-        --tail SECONDS: sound to keep after the last note, up to 600 (default: until it is 80 dB
-            below full scale, at most 5 s)
+        --tail SECONDS: how long the sound goes on after the last note, up to 600 (default: until it
+            has faded to -80 dBFS, at most 5 s)
         --gain-db DB: gain before the limiter, -60 to 24 (default: 0, or that of --preset)
-        --normalize: scale the result to a true peak of -1 dBFS (with --stems, the loudest file)
+        --normalize: scale the result to a true peak of -1 dBFS
         --loudness LUFS: scale the result to an integrated loudness, such as -16 or -23, or to a
-            true peak of -1 dBFS if that is quieter; stems keep their balance
+            true peak of -1 dBFS if that is quieter
         """,
         rate={"type": whole, "default": 44100},
         tail={"type": number_within(0.0, 600.0, "s"), "dest": "tail_s"},
@@ -49,7 +49,7 @@ def add_room(group: Any) -> None:
         group,
         """
         --room NAME: the room: one of the presets of rooms, such as hall, or a file
-        --dry: no room, and the same sound on both sides (default: a chamber)
+        --dry: no room: left and right are the same (default: a chamber)
         """,
         dry={"dest": "is_dry"},
     )
@@ -74,10 +74,10 @@ def add_stage(parser: Any) -> None:
         """
         --ensemble FILE.toml: play each MIDI channel but 10, or each part of a score, on a yehu of
             its own, up to 16; FILE.toml says who plays what, and where they sit
-        --by: with --ensemble: each channel or each track is a part (default: channel; track,
-            where tracks that sound together share one)
+        --by: with --ensemble: what is a part, each channel or each track (default: channel; track,
+            where tracks that sound together share a channel)
         --stems FOLDER: also write a file for each part, and one for the room: 01-NAME.wav ...
-            room.wav
+            room.wav; --normalize and --loudness keep their balance
         --jobs N: number of cores to use for an ensemble or a folder (default: all); the sound is
             the same
         """,
@@ -150,7 +150,7 @@ def room_of(name: str, presets: Presets) -> Values:
     if preset is not None and preset.is_room:
         return tuple(preset.values.items())
     other = [each for each in preset.values if not is_of_room(each)] if preset else []
-    why = f"it sets {other[0]}; " if other else ""
+    what = f"{name}: not a room (it sets {other[0]}; " if other else f"no room {name!r} ("
     rooms = [each.name for each in presets.all()[0] if each.is_room]
     near = did_you_mean(name, rooms)
-    raise ParameterError(f"{name}: not a room ({why}there are: {', '.join(rooms)}){near}")
+    raise ParameterError(f"{what}there are: {', '.join(rooms)}){near}")

@@ -1,11 +1,11 @@
-"""Write control surfaces and a page of the parameters, replacing older files.
+"""Write control surfaces, and a page that lists the parameters; they replace older files.
 
   yehu-server surfaces -o panels
   yehu-server surfaces -o panels --server 192.168.1.5:9000 --only yehu.pd
   yehu-server surfaces -o panels --part 2
   yehu-server surfaces -o mappings --check
 
-docs/surfaces.md describes how to open each.
+docs/surfaces.md says how to open each.
 """
 
 import argparse
@@ -29,8 +29,8 @@ def add_to(commands: Any) -> None:
         f"""
         --server HOST:PORT: address that Max, Pd and Open Stage Control send to (default:
             {format_address(*OSC_ADDRESS)}); in TouchOSC it is set by hand
-        --part N: for part N of a server (serve --parts): the files send to /yehu/part/N, and have
-            -part-N in their names
+        --part N: for player N of serve --parts: the files send to /yehu/part/N, and have -part-N in
+            their names
         --only NAME ...: write only this file, such as yehu.pd; may be repeated
         --check: write nothing; exit with code 1 where a file is not up to date
         """,

@@ -54,6 +54,12 @@ def warn(text: str) -> None:
     print(f"yehu-server: {one_line(text)}", file=sys.stderr)
 
 
+def warn_of(error: YehuError) -> None:
+    """Print an error, and all that is wrong beside it."""
+    for line in error.lines:
+        warn(line)
+
+
 def check_files(files: Iterable[Path], read: Callable[[Path], tuple[str, Iterable[str]]]) -> int:
     """Print what is in each file, and remarks, or all that is wrong; return the exit code."""
     code = 0
@@ -62,8 +68,7 @@ def check_files(files: Iterable[Path], read: Callable[[Path], tuple[str, Iterabl
             found, remarks = read(file)
         except YehuError as error:
             code = 2
-            for line in (str(error), *getattr(error, "more", ())):
-                warn(line)
+            warn_of(error)
         else:
             for line in remarks:
                 warn(line)
@@ -121,21 +126,18 @@ def ending_at_once() -> Iterator[None]:
 
 
 def warn_of_compiling(arguments: argparse.Namespace, more: Compiled | None = None) -> None:
-    """Warn where functions will be compiled: at their first use, or always if none is cached.
+    """Warn where functions will be compiled: once, or always if none is cached.
 
     `more`: those beside playing's, by the file that their machine code is kept in.
     """
     from yehu_server.compile.cache_folder import WHY_NOT_CACHED, cache_folder
-    from yehu_server.core.engine.warming import CALLED, COMPILING
+    from yehu_server.core.engine.warming import CALLED, what_compiles
 
-    if arguments.quiet:
-        return
-    functions = (CALLED, *(more or {}).values())
-    is_ready = all(function.is_ready for called in functions for function in called)
-    if WHY_NOT_CACHED and not is_ready:
-        warn(f"compiling; {cache_folder()}: {WHY_NOT_CACHED}")
-    elif not is_ready:
-        warn(f"{COMPILING}, in about a minute ...")
+    what = None if arguments.quiet else what_compiles(CALLED, *(more or {}).values())
+    if what is not None and WHY_NOT_CACHED:
+        warn(f"{what}, each time; {cache_folder()}: {WHY_NOT_CACHED}")
+    elif what is not None:
+        warn(f"{what}, once ...")
 
 
 def compile_all(arguments: argparse.Namespace, more: Compiled | None = None) -> None:
@@ -182,7 +184,7 @@ def calibrating(arguments: argparse.Namespace, rate: float) -> Iterator[Any]:
         def report(done: float, total: float) -> None:
             nonlocal is_told
             if not is_told:
-                warn(f"preparing this instrument for {rate / 1000.0:g} kHz, once ...")
+                warn(f"calibrating it for {rate / 1000.0:g} kHz (some seconds), once ...")
             is_told = True
             progress(done, total)
 

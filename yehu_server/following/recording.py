@@ -85,9 +85,7 @@ def _opened(path: Path) -> Iterator[Any]:
         with opened_sound(path) as file:
             yield file
     except OSError as error:
-        raise ScoreError(f"{path}: cannot be read ({error_reason(error).lower()})") from error
-    except ValueError as error:  # a NUL in the name
-        raise ScoreError("cannot be read (no such file name)") from error
+        raise ScoreError(f"{path}: {error_reason(error)}") from error
     except soundfile.LibsndfileError as error:
         raise ScoreError(f"{path}: not a sound file ({error.error_string})") from error
 

@@ -187,7 +187,9 @@ class Housekeeper:
         try:
             mapping = watch.poll()
         except MappingError as error:
-            self._on_message(f"{error}; the mapping stays as it was")
+            for line in error.lines:
+                self._on_message(line)
+            self._on_message("the mapping stays as it was")
             return
         if mapping is not None:
             player.remap(mapping, frame=player.frame_of())

@@ -243,7 +243,7 @@ def read(values: Mapping[str, float], address: str) -> float:
     """The value of a parameter; at ADDRESS/unit, as 0 to 1."""
     plain = address.removesuffix(UNIT)
     value = values[plain]
-    return value if plain == address else BY_ADDRESS[plain].to_unit(value)
+    return value if plain == address else offered(BY_ADDRESS[plain]).to_unit(value)
 
 
 def full_address(name: str) -> str:

@@ -17,7 +17,7 @@ from yehu_server.core.player.bowing import (
 )
 from yehu_server.errors import ParameterError, ScoreError
 from yehu_server.params.table import STRING_NAMES
-from yehu_server.util.files import read_text
+from yehu_server.util.files import error_reason, read_text
 from yehu_server.util.parsing import parse_json
 
 Array = Any
@@ -73,7 +73,7 @@ def read_bowing_table(path: Path) -> Array:
     try:
         return table_of(parse_json(read_text(path, MAX_BYTES)))
     except OSError as error:
-        raise ScoreError(f"{path}: {error.strerror}") from error
+        raise ScoreError(f"{path}: {error_reason(error)}") from error
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
     except ValueError as error:  # no UTF-8, or no JSON

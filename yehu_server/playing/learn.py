@@ -20,7 +20,7 @@ from yehu_server.playing.mapping import (
 from yehu_server.playing.mapping_file import MappingFile, read_mapping_file, settable_param, text_of
 from yehu_server.playing.mapping_writer import as_toml, edited
 from yehu_server.playing.sources import OF_ONE_NOTE, is_address
-from yehu_server.util.files import write_text
+from yehu_server.util.files import error_reason, write_text
 from yehu_server.util.processes import machine_lock
 
 LOCK = "learned"  # another server may learn at the same time
@@ -200,6 +200,6 @@ def _save(mapping: Mapping, path: Path, text: str) -> Mapping:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise MappingError(f"{path.parent}: {error.strerror}") from error
+        raise MappingError(f"{path.parent}: {error_reason(error)}") from error
     write_text(path, text)
     return current(mapping)

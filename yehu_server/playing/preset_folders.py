@@ -13,7 +13,14 @@ from tomlkit.exceptions import TOMLKitError
 
 from yehu_server.errors import OutputError, PresetError, did_you_mean
 from yehu_server.params.preset_file import SAVED, VERSION, Preset, document_of, preset_from
-from yehu_server.util.files import is_plain_name, path_inside, read_text, shipped_folder, write_text
+from yehu_server.util.files import (
+    error_reason,
+    is_plain_name,
+    path_inside,
+    read_text,
+    shipped_folder,
+    write_text,
+)
 
 ENDING = ".toml"
 MINE = "mine/"  # prefix of the names of the user's own presets
@@ -166,7 +173,7 @@ class Presets:
             self.own.mkdir(parents=True, exist_ok=True)
             write_text(path, tomlkit.dumps(document))
         except OSError as error:
-            raise PresetError(f"{self.own}: {error.strerror}") from error
+            raise PresetError(f"{self.own}: {error_reason(error)}") from error
 
     def delete(self, name: str) -> None:
         """Delete one of the user's own presets; raises PresetError if not there, or it fails."""
@@ -178,14 +185,14 @@ class Presets:
         try:
             path.unlink()
         except OSError as error:
-            raise PresetError(f"{name}: {error.strerror}") from error
+            raise PresetError(f"{name}: {error_reason(error)}") from error
 
     def _read(self, path: Path, name: str) -> Preset:
         """Read a file, unless it is unchanged since it was read; raises PresetError."""
         try:
             status = path.stat()
         except OSError as error:
-            raise PresetError(f"{name}: {error.strerror}") from error
+            raise PresetError(f"{name}: {error_reason(error)}") from error
         return _read_once(path, name, status.st_mtime_ns, status.st_size)
 
     def _own_file(self, name: str) -> Path:

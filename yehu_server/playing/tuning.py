@@ -4,10 +4,12 @@ A scale (``.scl``) lists intervals above its first note, 1/1; a keyboard map (``
 them to keys and gives the frequency of a reference key.
 """
 
+from __future__ import annotations
+
 import math
 import re
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 
@@ -71,6 +73,13 @@ class Tuning:
     # Whether pitches are relative to an A4 of 440 Hz, whatever the instrument's A4 is.
     fixed: bool = False
     files: tuple[Path, ...] = field(default=(), compare=False)  # the files that it was read from
+    transposed_by: int = 0  # semitones, which `keys` have already
+
+    def transposed(self, semitones: int) -> Tuning:
+        """The same tuning with every key so many semitones higher."""
+        keys = KEYS if self.keys is None else self.keys
+        moved = tuple(None if key is None else key + semitones for key in keys)
+        return replace(self, keys=moved, transposed_by=semitones) if semitones else self
 
     @property
     def has_octaves(self) -> bool:
@@ -162,7 +171,8 @@ def _found(path: Path, ending: str) -> Path:
     if not shipped.exists():
         names = sorted(file.stem for file in folder.glob(f"*{ending}"))
         there = f"(shipped: {', '.join(names)}; or name a file){did_you_mean(path, names)}"
-        raise ParameterError(f"no {ending} {str(path)!r} {there}")
+        what = "scale" if ending == ".scl" else "keyboard map"
+        raise ParameterError(f"no {what} {str(path)!r} {there}")
     return shipped
 
 

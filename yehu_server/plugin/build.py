@@ -15,6 +15,7 @@ from yehu_server.plugin.header import header
 from yehu_server.plugin.objects import make_objects, object_file
 from yehu_server.plugin.parameters import parameters
 from yehu_server.plugin.targets import ALL, X11, System, systems_of
+from yehu_server.util.files import error_reason
 from yehu_server.util.hints import install_command
 
 SOURCE = Path(__file__).parent / "source"
@@ -92,7 +93,7 @@ def build(folder: Path, target: str) -> list[Path]:
                 )
             ]
     except OSError as error:
-        raise OutputError(f"{error.filename or folder}: {error.strerror}") from error
+        raise OutputError(f"{error.filename or folder}: {error_reason(error)}") from error
 
 
 def check_headers(target: str) -> None:

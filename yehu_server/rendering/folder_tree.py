@@ -60,8 +60,8 @@ def _names(folder: Path, output: Path, problems: list[tuple[str, str]]) -> Itera
     def is_unreadable(error: OSError) -> None:
         place = os.path.relpath(error.filename, folder)
         if place == ".":
-            raise ScoreError(f"{folder}: cannot be read: {error_reason(error)}") from error
-        problems.append((place, f"cannot be read: {error_reason(error)}"))
+            raise ScoreError(f"{folder}: {error_reason(error)}") from error
+        problems.append((place, error_reason(error)))
 
     seen = {os.path.realpath(folder), os.path.realpath(output)}
     for place, folders, files in os.walk(folder, onerror=is_unreadable, followlinks=True):

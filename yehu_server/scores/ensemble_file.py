@@ -48,7 +48,7 @@ class EnsembleFile:
 
 
 def read_ensemble(path: Path) -> EnsembleFile:
-    """Read an ensemble file. Raises EnsembleError with file and line; its `more` are others."""
+    """Read an ensemble file. Raises EnsembleError, all errors with file and line."""
     document = Document(path, "an ensemble file", EnsembleError, most_errors=MAX_ERRORS)
     table = document.read(path).toml()
     table.read("about", str, "")

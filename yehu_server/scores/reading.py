@@ -137,7 +137,8 @@ class ReadOptions:
             in_range=playing.policy is not RangePolicy.CLAMP and playing.tuning.has_octaves,
             leaves_low_keys=playing.policy is RangePolicy.SKIP,
             is_mpe=playing.mapping.mpe,
-            within=range_of(playing.quantities),
+            # In the keys of the score, which the tuning transposes.
+            within=range_of(playing.quantities).transposed(-playing.tuning.transposed_by),
             channels=playing.channels,
             key_switches=playing.mapping.key_switches,
         )

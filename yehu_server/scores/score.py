@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import math
 import os
 from bisect import insort
@@ -62,11 +61,7 @@ def read_score_bytes(path: str | os.PathLike[str], most_bytes: int) -> bytes:
     try:
         data = read_bytes(Path(path), most_bytes)
     except OSError as error:
-        if error.errno == errno.EFBIG:
-            raise ScoreError(f"larger than {most_bytes >> 20} MiB") from None
-        raise ScoreError(f"cannot be read ({error_reason(error).lower()})") from None
-    except ValueError:  # a NUL in the name
-        raise ScoreError("cannot be read (no such file name)") from None
+        raise ScoreError(error_reason(error)) from None
     if not data.strip():
         raise ScoreError("is empty")
     return data

@@ -25,7 +25,7 @@ from py2tosc import (
 
 from yehu_server.live.network import Address
 from yehu_server.params.spec import Curve, Param
-from yehu_server.params.table import UNIT
+from yehu_server.params.table import UNIT, offered
 from yehu_server.playing.pitch_and_level import note_name
 from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.common_layout import Axis, Frame, Group, Pad, osc_address
@@ -205,7 +205,7 @@ def _pages(group: Group) -> Iterator[Control]:
 def _strip(param: Param, frame: Frame) -> Control:
     """Return name, fader, value and range of one parameter."""
     *_, width, height = frame
-    inner = width - 2 * GAP
+    inner, param = width - 2 * GAP, offered(param)
     script = SHOW.format(lo=param.lo, hi=param.hi, formula=FORMULAS[param.curve])
     fader = py2tosc.fader(
         name="fader",

@@ -14,14 +14,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
-from yehu_server.errors import ParameterError, YehuError, did_you_mean
+from yehu_server.errors import ParameterError, SettingsError, YehuError, did_you_mean
 from yehu_server.util.files import MAX_SETTINGS_BYTES, error_reason, read_text
-from yehu_server.util.parsing import KeyPath, line_at, lines_of, parse_json, parse_toml
+from yehu_server.util.parsing import (
+    KeyPath,
+    ParsingError,
+    line_at,
+    lines_of,
+    parse_json,
+    parse_toml,
+)
 from yehu_server.util.values import brief
 
 MAX_ERRORS = 50  # searching for a similar name takes milliseconds each
 MANY = sys.maxsize
-_LINE = re.compile(r"\bline ([0-9]+)")
 _DOTTED = re.compile(r"[\w.-]+")
 
 # What only one kind of file has at its top, to tell of one that was taken for another.
@@ -44,9 +50,13 @@ D = TypeVar("D")
 P = ParamSpec("P")
 
 
-def looks_like(data: Mapping[str, Any]) -> str:
-    """The kind of file that data are of, for the end of an error; nothing where it is unknown."""
-    return next((f"; it looks like {_KINDS[name]}" for name in data if name in _KINDS), "")
+def looks_like(data: Mapping[str, Any], what: str) -> str:
+    """The kind of file that data are of, if it is another, for the end of an error; else nothing.
+
+    `what`: what the file should be.
+    """
+    kind = next((_KINDS[name] for name in data if name in _KINDS), what)
+    return "" if what.startswith(kind) else f"; it looks like {kind}"
 
 
 @dataclass(eq=False)
@@ -96,9 +106,9 @@ class Document:
         return self.unreadable or self.error
 
     def _not(self, error: ValueError) -> YehuError:
-        found = _LINE.search(str(error))
-        line = f":{found[1]}" if found else ""
-        return self._unreadable(f"{self.name}{line}: not {self.what} ({error})")
+        line = f":{error.line}" if isinstance(error, ParsingError) else ""
+        reason = "no text in UTF-8" if isinstance(error, UnicodeDecodeError) else error
+        return self._unreadable(f"{self.name}{line}: not {self.what} ({reason})")
 
     def _line(self, key: KeyPath) -> int | None:
         if self._lines is None:
@@ -120,9 +130,11 @@ class Document:
     def raise_errors(self) -> None:
         """Raise the errors that were added, by line, as one; return where there are none."""
         if self._found:
-            lines = [what for _, what in sorted(self._found, key=lambda one: one[0])]
+            first, *others = [what for _, what in sorted(self._found, key=lambda one: one[0])]
             self._found = []
-            self.raised = self.error(*lines)
+            self.raised = self.error(first)
+            for other in others:
+                self.raised.add_note(other)
             raise self.raised
 
 
@@ -174,13 +186,14 @@ class Fields:
 
     @contextmanager
     def at(self, name: str = "") -> Iterator[None]:
-        """Give a ParameterError without a place the place of an entry; see `add_error`."""
+        """Give errors of values, or of a file that is named, an entry's place; see `add_error`."""
         try:
             yield
-        except ParameterError as error:
+        except (ParameterError, SettingsError) as error:
             if error is self.document.raised:
                 raise
-            self.add_error(name, str(error))
+            for line in error.lines:
+                self.add_error(name, line)
 
     def read(
         self,
@@ -243,5 +256,5 @@ class Fields:
             if name not in self._known and name not in others:
                 known = (*self._known, *others)
                 hint = did_you_mean(name, known)
-                kind = "" if self.place or self.key else looks_like(self.data)
+                kind = "" if self.place or self.key else looks_like(self.data, self.document.what)
                 self.add_error(name, f"unknown entry{hint}{kind} (known: {', '.join(known)})")

@@ -36,7 +36,10 @@ def open_regular(path: Path, most_bytes: int | None = None) -> BinaryIO:
     Raises OSError also where it is a device or a pipe, which may never begin or end, or is too
     large.
     """
-    file = open(path, "rb", opener=open_at_once)  # noqa: SIM115 - the caller closes it
+    try:
+        file = open(path, "rb", opener=open_at_once)  # noqa: SIM115 - the caller closes it
+    except ValueError:  # a NUL in the name
+        raise OSError(errno.ENOENT, "No such file") from None
     status = os.fstat(file.fileno())
     if not stat.S_ISREG(status.st_mode):
         file.close()
@@ -48,7 +51,8 @@ def open_regular(path: Path, most_bytes: int | None = None) -> BinaryIO:
 
 
 def _too_large(most_bytes: int) -> OSError:
-    return OSError(errno.EFBIG, f"File too large, above {most_bytes >> 10} KiB")
+    size = f"{most_bytes >> 10} KiB" if most_bytes % 2**20 else f"{most_bytes >> 20} MiB"
+    return OSError(errno.EFBIG, f"Larger than {size}")
 
 
 def read_bytes(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
@@ -82,11 +86,15 @@ def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
     return read_bytes(path, most_bytes).decode("utf-8")
 
 
+_REASONS = {errno.ENOENT: "no such file", errno.EISDIR: "is a folder"}  # not the system's words
+
+
 def error_reason(error: BaseException) -> str:
     """The reason of an error, for a message: its own, or the system's where it has one."""
     if isinstance(error, OSError) and error.strerror:
         # `socket.create_server` adds an address, which our message has already.
-        return error.strerror.partition(" (while attempting to bind")[0]
+        reason = error.strerror.partition(" (while attempting to bind")[0]
+        return _REASONS.get(error.errno or 0, f"{reason[0].lower()}{reason[1:]}")
     return str(error) or type(error).__name__
 
 

@@ -9,7 +9,7 @@ from typing import Any, BinaryIO, TypeVar
 import numpy as np
 
 from yehu_server.errors import ScoreError
-from yehu_server.util.files import open_regular
+from yehu_server.util.files import error_reason, open_regular
 
 T = TypeVar("T")
 
@@ -29,7 +29,7 @@ def read_npz(path: Path, build: Callable[[dict[str, Any]], T], what: str) -> T:
             with np.load(opened, allow_pickle=False) as file:
                 return build({name: file[name] for name in file.files})
     except OSError as error:
-        raise ScoreError(f"{path}: {error.strerror or error}") from error
+        raise ScoreError(f"{path}: {error_reason(error)}") from error
     except Exception as error:  # damaged archives raise whatever they lead to
         raise ScoreError(f"{path}: is not {what}") from error
 

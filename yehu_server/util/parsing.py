@@ -6,6 +6,8 @@ import tomllib
 from collections.abc import Iterator
 from typing import Any
 
+from yehu_server.util.values import brief
+
 MAX_DEPTH = 32
 MAX_INTEGER_BITS = 8192  # Python prints no integers of more than 4,300 digits
 # tomllib takes time by the square of a key's parts: 20 s for one of 64 kB.
@@ -30,22 +32,52 @@ _PIECE = re.compile(
 )
 
 
+# What tomllib complains of, by words of it that all Pythons have, in our words.
+_TOML_ERRORS = {
+    r"Invalid (statement|initial)": "expected NAME = VALUE or [TABLE]; names with / are quoted",
+    r"Expected '='": "expected = after the name",
+    r"Invalid value": "expected a value; text is quoted",
+    r"Invalid|Unescaped": r"a backslash in text is written \\\\",
+    r"Expected newline": "expected the end of the line after the value",
+    r"Cannot": "this name is there already",
+    r"Unclosed array": "expected , or ]",
+    r"Unclosed inline": "expected , or }",
+    r"Expected '\]": "expected ] after the name of a table",
+    r"": "text without its closing quotation mark",
+}
+_LINE = re.compile(r"\bline ([0-9]+)")
+
+
+class ParsingError(ValueError):
+    """What is wrong with a text, and in which line (from 1)."""
+
+    def __init__(self, reason: str, line: int) -> None:
+        super().__init__(reason)
+        self.line = line
+
+
 def parse_toml(text: str) -> dict[str, Any]:
-    """Parse a TOML text; raises ValueError with the line where that is known."""
+    """Parse a TOML text; raises ValueError, ParsingError where the line is known."""
     if _LONG_KEY.search(text):
         raise ValueError(f"a key has more than {MAX_KEY_PARTS} parts")
     try:
         return dict(_checked(tomllib.loads(text)))
+    except tomllib.TOMLDecodeError as error:
+        found = _LINE.search(str(error))
+        lines = text.rstrip().split("\n")
+        line = min(int(found[1]) if found else len(lines), len(lines))
+        reason = next(ours for theirs, ours in _TOML_ERRORS.items() if re.match(theirs, str(error)))
+        raise ParsingError(f"{reason}, got {brief(lines[line - 1].strip())}", line) from None
     except RecursionError:
         raise ValueError("nested too deeply") from None
 
 
 def parse_json(text: str) -> Any:
-    """Parse a JSON text; raises ValueError where it is not JSON, or refused."""
+    """Parse a JSON text; raises ParsingError where it is not JSON, ValueError where refused."""
     try:
         return _checked(json.loads(text))
     except json.JSONDecodeError as error:  # its words are of Python
-        raise ValueError(f"no JSON from line {error.lineno}, column {error.colno} on") from None
+        raise ParsingError(f"no JSON from column {error.colno} on", error.lineno) from None
     except RecursionError:
         raise ValueError("nested too deeply") from None
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Collection
+from datetime import date, time
 from typing import Any
 
 from yehu_server.errors import ParameterError, did_you_mean
@@ -68,7 +69,20 @@ def choices(value: Any, known: Collection[str]) -> list[str]:
     return [choice(each, known) for each in value]
 
 
-def brief(value: Any, text_of: Callable[[Any], str] = repr) -> str:
+def _shown(value: Any) -> str:
+    """A value as files write it, not as Python does."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool | date | time):
+        return str(value).lower()
+    if isinstance(value, list):
+        return f"[{', '.join(map(_shown, value[:MAX_SHOWN]))}]"
+    if isinstance(value, dict):
+        return "a table"
+    return repr(value)
+
+
+def brief(value: Any, text_of: Callable[[Any], str] = _shown) -> str:
     """A value for an error, cut short."""
     try:
         text = text_of(value)

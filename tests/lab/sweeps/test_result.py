@@ -41,7 +41,7 @@ def test_a_damaged_or_another_file_is_reported_in_a_line(tmp_path, result):
         np.savez(target, **arrays)
         with pytest.raises(ScoreError, match=r"mine\.npz: is not the result"):
             Result.load(target)
-    with pytest.raises(ScoreError, match="No such file"):
+    with pytest.raises(ScoreError, match="no such file"):
         Result.load(tmp_path / "none.npz")
 
 

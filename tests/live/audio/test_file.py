@@ -114,7 +114,7 @@ def test_a_disk_that_is_full_only_for_the_last_samples_is_reported(
     short = target.stat().st_size - 10
     target.write_bytes(b"older")
     limited(short)
-    with pytest.raises(OutputError, match="cannot write: File too large"):
+    with pytest.raises(OutputError, match="cannot write: file too large"):
         write(target, samples, kind, subtype)
     assert target.read_bytes() == b"older"
     assert list(tmp_path.iterdir()) == [target]

@@ -84,7 +84,7 @@ def test_a_disk_that_fills_amid_a_frame_leaves_whole_frames(
         header = target.stat().st_size
         most_bytes = header + 12_000 * each + each - 1
         limited(most_bytes)
-        with pytest.raises(OutputError, match="cannot write: File too large"):  # noqa: PT012
+        with pytest.raises(OutputError, match="cannot write: file too large"):  # noqa: PT012
             for part in np.array_split(samples, 7):
                 writer.write(part)
             writer.close()

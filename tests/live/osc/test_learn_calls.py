@@ -218,3 +218,17 @@ def test_what_another_server_has_learned_is_not_given_back(still):
     learn.learn(still.player.mapping, "/playing/volume", LearnedSource("/d"), soft=False)
     ((_, count, *returned),) = answers(still.ask("/unlearn", "/playing/vibrato"), "/unlearned")
     assert (count, returned) == (1, [])
+
+
+def test_what_another_server_has_learned_is_kept_and_used_with_the_next_that_is_learned(still):
+    still.ask("/learn", "/playing/vibrato")
+    turn(still, 20, 0, 127)
+    learn.learn(still.player.mapping, "/playing/volume", LearnedSource("cc 21"), soft=False)
+    still.ask("/learn", "/playing/press")
+    assert not still.player.mapping.of("cc 21")
+    turn(still, 22, 0, 127)
+    still.settle()
+    assert [len(still.player.mapping.of(f"cc {number}")) for number in (20, 21, 22)] == [1, 1, 1]
+    *_, learned, others = still.services.said
+    assert learned.startswith("cc 22 added: /playing/press")
+    assert others == "what others changed in this file is used from now on, too"

@@ -62,7 +62,7 @@ def test_guests_are_what_the_option_says_or_a_config_file(tmp_path, capsys) -> N
         assert (guests and guests.role) == role
     with pytest.raises(SystemExit):
         page_of("--lan=admin")
-    assert "is none of" in (err := capsys.readouterr().err)
+    assert "is not one of" in (err := capsys.readouterr().err)
     assert err.count("\n") == 1
 
 

@@ -23,7 +23,16 @@ CALLED = (
 )  # fmt: skip
 
 Compiled = Mapping[str, Sequence[Native]]
-COMPILING = "compiling for this machine, once"
+
+
+def what_compiles(*called: Sequence[Native]) -> str | None:
+    """What of some functions has to be compiled, and for how long, in words; None where nothing."""
+    for functions in called:
+        if not IS_PLAIN and not all(function.is_ready for function in functions):
+            if functions is CALLED:
+                return "compiling the instrument for this machine (about a minute)"
+            return "compiling what else is needed (some seconds)"
+    return None
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from yehu_server.core.physics.default_quantities import Quantities
 from yehu_server.core.player.note_tables import OPEN_NOTES, NoteTables
@@ -17,6 +17,7 @@ class NoteRange:
     open_notes: tuple[int, int] = OPEN_NOTES  # what the strings are tuned to, the lower first
     reaches: tuple[float, ...] = REACHES  # how far above them fingers stop (semitones)
     bridge_x: float = Quantities().bridge_x  # m, by which harmonics are found
+    transposed_by: int = 0  # semitones, which the open notes have already
 
     @classmethod
     def of(cls, quantities: Quantities, calibration: NoteTables | None) -> NoteRange:
@@ -29,6 +30,12 @@ class NoteRange:
         """That of an instrument whose strings are tuned to some notes."""
         reaches = tuple(string.reach for string in quantities.strings)
         return cls(open_notes, reaches, quantities.bridge_x)
+
+    def transposed(self, semitones: int) -> NoteRange:
+        """The same range, so many semitones higher."""
+        lower, upper = (note + semitones for note in self.open_notes)
+        by = self.transposed_by + semitones
+        return replace(self, open_notes=(lower, upper), transposed_by=by)
 
     @property
     def highest_notes(self) -> tuple[float, ...]:

@@ -52,6 +52,7 @@ class LearnCalls(GroupCalls):
         self, peer: Peer, target: str, found: LearnedSource, soft: bool, only: bool
     ) -> Callable[[], None]:
         before = learn.current(self._player.mapping)
+        is_new = before != self._player.mapping
         source = found.source
         if self._group and is_address(source):
             found = replace(found, part=part_of(self._group) + 1)
@@ -62,6 +63,8 @@ class LearnCalls(GroupCalls):
         def take() -> None:
             self._take(mapping)
             self._context.log(f"{learn.added(before, mapping, target, found)} ({path})")
+            if is_new:
+                self._context.log("what others changed in this file is used from now on, too")
             self._send(peer, "/learned", self._prefix + target, str(found), str(path), kept, *lost)
 
         return take

@@ -14,7 +14,7 @@ from yehu_server.live.osc.status import STATUS_PREFIX, as_argument
 from yehu_server.live.part_addresses import PART_PARAMS
 from yehu_server.params.articulations import ARTICULATIONS, number_of
 from yehu_server.params.spec import TURNED_ON, Param
-from yehu_server.params.table import NAMES, PREFIX, TABLE, UNIT, find, named, there_is
+from yehu_server.params.table import NAMES, PREFIX, TABLE, UNIT, find, named, offered, there_is
 from yehu_server.playing.bind import Bind
 from yehu_server.playing.part_state import within_midi
 from yehu_server.playing.player import Player
@@ -52,9 +52,7 @@ class PartCalls(GroupCalls):
             value = named(param, call.arguments[0])
         else:
             (value,) = call.numbers(1)
-        if param.is_choice:  # to what plays: faders of surfaces pass through fractions
-            value = there_is(param, float(math.floor(value + TURNED_ON)))
-        self._set(call, address, value)
+        self._set(call, address, there_is(param, _whole(param, value)))
         self._echo(call.peer, [address])
 
     def _set(self, call: Request, address: str, value: float) -> None:
@@ -65,7 +63,7 @@ class PartCalls(GroupCalls):
     def set_unit(self, call: Request, param: Param) -> None:
         """Set a parameter by 0 to 1 of its range."""
         (unit,) = call.numbers(1)
-        self._set(call, param.address, param.from_unit(unit))
+        self._set(call, param.address, _whole(param, offered(param).from_unit(unit)))
         self._echo(call.peer, [param.address + UNIT])
 
     def move(self, call: Request, bind: Bind) -> None:
@@ -236,3 +234,8 @@ class PartCalls(GroupCalls):
 def within_an_hour(seconds: float) -> float:
     """The nearest length of a subscription (s) to one that is asked for."""
     return min(max(seconds, 0.0), LONGEST_SUBSCRIPTION_S)
+
+
+def _whole(param: Param, value: float) -> float:
+    """A value; of a choice what plays: faders of surfaces pass through fractions."""
+    return float(math.floor(value + TURNED_ON)) if param.is_choice else value

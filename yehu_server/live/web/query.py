@@ -115,7 +115,7 @@ def _of_param(param: Param, group: str, values: Values) -> Node:
 
 
 def _of_unit(param: Param, group: str, values: Values) -> Node:
-    value = param.to_unit(values(group)[param.address])
+    value = offered(param).to_unit(values(group)[param.address])
     return _of_number(value, 0.0, 1.0, f"{param.doc} As 0 to 1.")
 
 

@@ -59,7 +59,8 @@ def line_of(moves: Sequence[tuple[str, Octaves]], within: NoteRange = YEHU) -> s
     low = [name for name, octaves in moves if octaves.whole >= FAR_UP]
     names = ", ".join(filter(None, low)) or "it"
     deeper = f" (a deeper fiddle for {names}: {DEEPER_FIDDLE})" if low else ""
-    return f"{MOVED} {range_text(within)}: {text}{deeper}"
+    own = within.transposed(-within.transposed_by)
+    return f"{MOVED} {range_text(own)}: {text}{deeper}"
 
 
 def spans_of(parts: Sequence[Part], within: NoteRange = YEHU) -> NoteSpans:

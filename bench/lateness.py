@@ -28,7 +28,7 @@ from load import CARD, compute, helper, loaded, sound_card
 from yehu_server.core.engine.mailbox import MIDI_INPUTS, SERVER
 from yehu_server.core.engine.warming import warm_up
 from yehu_server.live.audio.output import OutputOptions
-from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.midi.midi_inputs import MidiOptions
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.live.web.server import WebOptions

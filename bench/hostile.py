@@ -45,7 +45,7 @@ def serve(pipe: Any, has_midi: bool) -> None:
     """Serve until asked to stop; answer each request with the notes received and the status."""
     from yehu_server.live.audio.devices import NULL
     from yehu_server.live.audio.output import OutputOptions
-    from yehu_server.live.midi.ports import MidiOptions
+    from yehu_server.live.midi.midi_inputs import MidiOptions
     from yehu_server.live.options import ServeOptions
     from yehu_server.live.server import Server
 

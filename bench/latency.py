@@ -30,7 +30,7 @@ from yehu_server.core.midi.packing import PORT_SHIFT, packed
 from yehu_server.core.player.commands import WRITE
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.live.audio.output import OutputOptions
-from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.midi.midi_inputs import MidiOptions
 from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.packets import pack, unpack
 from yehu_server.live.server import Server

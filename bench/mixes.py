@@ -110,7 +110,7 @@ class Sender(Peer):
         """Whether it reads answers."""
         return False
 
-    def send(self, packet: bytes) -> None:
+    def send(self, *packets: bytes) -> None:
         """Leave an answer unread."""
 
     def play(self, handler: OscHandler, some: list[bytes], frame: int | None = None) -> None:

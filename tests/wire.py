@@ -136,8 +136,8 @@ class FakePeer:
         self.packets: list[bytes] = []
         self.others: dict[int, FakePeer] = {}
 
-    def send(self, packet: bytes) -> None:
-        self.packets.append(packet)
+    def send(self, *packets: bytes) -> None:
+        self.packets += packets
 
     def at(self, port: int) -> "FakePeer":
         return self.others.setdefault(port, FakePeer(port, self.host))

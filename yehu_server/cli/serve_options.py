@@ -148,7 +148,7 @@ def add_arguments(parser: Parser) -> None:
 def options_of(arguments: argparse.Namespace) -> Any:
     """The `ServeOptions` of parsed arguments; raises YehuError where a value or file is wrong."""
     from yehu_server.live.audio.output import OutputOptions
-    from yehu_server.live.midi.ports import MidiOptions
+    from yehu_server.live.midi.midi_inputs import MidiOptions
     from yehu_server.live.midi.systems import check_api
     from yehu_server.live.options import ServeOptions
     from yehu_server.live.web.server import WebOptions

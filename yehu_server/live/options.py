@@ -8,7 +8,7 @@ from platformdirs import user_music_path
 
 from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.audio.voice_input import FollowOptions
-from yehu_server.live.midi.ports import MidiOptions
+from yehu_server.live.midi.midi_inputs import MidiOptions
 from yehu_server.live.network import OSC_ADDRESS, Address, Allowed
 from yehu_server.live.page.pages import PageOptions
 from yehu_server.live.web.server import WebOptions

@@ -19,7 +19,7 @@ from yehu_server.live.audio.output import Output
 from yehu_server.live.audio.recordings import Recordings
 from yehu_server.live.audio.voice_input import VoiceInput
 from yehu_server.live.housekeeper import Housekeeper, MappingWatch
-from yehu_server.live.midi.ports import MidiPorts
+from yehu_server.live.midi.midi_inputs import MidiInputs
 from yehu_server.live.options import ServeOptions
 from yehu_server.live.osc.context import CallContext
 from yehu_server.live.osc.handler import OscHandler
@@ -39,7 +39,7 @@ from yehu_server.system.processes import be_prompt
 from yehu_server.util.files import check_free, check_target, replace_any, replace_none
 
 log = logging.getLogger(__name__)
-Input = OscPorts | WebServer | Announcer | MidiPorts | Pages | VoiceInput
+Input = OscPorts | WebServer | Announcer | MidiInputs | Pages | VoiceInput
 FADE_MS = 50.0  # waited for after the notes' release
 
 
@@ -163,11 +163,11 @@ class Server:
             self.players, self.options.page, memory, self._sound, self._on_message, self._rigs
         )
 
-    def _midi(self) -> MidiPorts | None:
+    def _midi(self) -> MidiInputs | None:
         if not self.options.midi:
             return None
         memory = self.output.memory
-        return MidiPorts(self.players, self.options.midi, memory, self._rigs, self._on_message)
+        return MidiInputs(self.players, self.options.midi, memory, self._rigs, self._on_message)
 
     def _voice(self) -> VoiceInput | None:
         follow, output = self.options.follow, self.options.output

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Mapping as Values
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -40,8 +40,7 @@ UNMAPPED = Mapping("", ())
 ELSEWHERE = -1  # the channel of notes that do not come from MIDI
 
 
-@dataclass(frozen=True)
-class Key:
+class Key(NamedTuple):
     """A held note by its channel, a number for each source, and key, which may be fractional."""
 
     channel: int
@@ -81,13 +80,9 @@ class PartState:
         self.part = part
         self.instruments = tuple(instruments)
         self.instrument = instruments[0]  # which has the record of the part
+        self.notes: NoteRange = self.instrument.spec.notes  # that it has
         self.mapping = UNMAPPED
         self.pending: dict[str, Pending] = {}
-
-    @property
-    def notes(self) -> NoteRange:
-        """The notes that the instrument has."""
-        return self.instrument.spec.notes
 
     @property
     def players(self) -> int:

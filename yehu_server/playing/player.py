@@ -7,6 +7,7 @@ import threading
 from collections.abc import Collection, Iterable, Sequence
 from collections.abc import Mapping as Values
 from contextvars import ContextVar
+from functools import lru_cache
 from typing import Any, Self
 
 import mido
@@ -29,6 +30,7 @@ from yehu_server.playing.preset_folders import Presets
 from yehu_server.playing.tables import Controls, make_tables
 from yehu_server.playing.tuning import EQUAL, STANDARD_A4, RangePolicy, Tuning
 
+KEYS_KEPT = 256  # whose pitches are kept
 OWN_VALUES = -1.0  # in place of a velocity: the note has been given its values
 # Whose queue the events wait in that this thread posts (``Instrument.post``).
 SENDER: ContextVar[int] = ContextVar("sender", default=0)
@@ -64,6 +66,7 @@ class Player(PartState):
         if places != [places[0] + number * RIG_BYTES for number in range(len(places))]:
             raise ValueError("the instruments of a section lie one after another on a stage")
         self.policy, self._tuning, self._a4 = policy, tuning, a4
+        self.pitches = lru_cache(KEYS_KEPT)(self._pitches)
         self.presets = Presets() if presets is None else presets
         self.controls = Controls()
         self.learning = Learning()
@@ -162,14 +165,14 @@ class Player(PartState):
         """
         param = find(address)
         accepted = param.clamped(value)
-        index = INDEX[param.address]
+        index = INDEX[address]
         if index == SECTION:
             accepted = min(float(round(accepted)), float(self.players))
         with self._lock:
-            if not hold and self.refuses(address):
+            if not (hold or param.player_controlled) and self.keeps(address):
                 accepted = self.value(address)
-            self._note(param.address, accepted, frame, is_held=hold)
-            if param.address == "/bow/force":  # raw newtons are heard only without assist
+            self._note(address, accepted, frame, is_held=hold)
+            if address == "/bow/force":  # raw newtons are heard only without assist
                 self._note("/bow/assist", 0.0, frame, is_held=hold)
             self.post(commands.HOLD if hold else kind, frame, index, accepted, glide_ms)
         return accepted
@@ -214,7 +217,7 @@ class Player(PartState):
         """Whether the instrument has a note for a key."""
         return self.pitches(key.note)[1] is not None
 
-    def pitches(self, key: float) -> tuple[float | None, float | None]:
+    def _pitches(self, key: float) -> tuple[float | None, float | None]:
         """The pitch (fractional MIDI note) of a key, and that within range which it sounds at."""
         tuned = self._tuning.pitch(key, self._a4)
         return tuned, None if tuned is None else self.policy.fit(tuned, self.notes)

@@ -43,9 +43,9 @@ def build() -> dict[str, str]:
     }
 
 
-def as_line(command: Any, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for each kind
-    """The JSON value of a command, a record of dtype COMMAND, of a player, counted from 0."""
-    frame, kind, index, value, other = command.item()
+def as_line(command: CommandRow, player: int = 0) -> list[Any]:  # noqa: PLR0911 - one for each kind
+    """The JSON value of a command, the fields of a COMMAND, of a player, counted from 0."""
+    frame, kind, index, value, other = command
     line: list[Any] = [frame, player + 1, commands.KINDS[kind]]
     if kind == commands.RAMP:
         return [*line, ADDRESSES[index], value, int(other)]

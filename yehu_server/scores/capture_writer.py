@@ -34,7 +34,7 @@ class CaptureWriter:
 
     def commands(self, commands: Any, player: int = 0) -> None:
         """Add commands [shape=(n,), dtype=COMMAND] that a player, counted from 0, applied."""
-        self._write(as_line(command, player) for command in commands)
+        self._write(as_line(command, player) for command in commands.tolist())
         self.events += len(commands)
 
     def note(self, what: str, frame: int, **details: int) -> None:

@@ -13,6 +13,7 @@ SO_RCVBUFFORCE, SO_TIMESTAMPNS, SO_RXQ_OVFL = 33, 35, 40
 STAMP, COUNT = struct.Struct("@ll"), struct.Struct("@I")  # struct timespec, of the kernel
 TRUNCATED = int(socket.MSG_TRUNC)  # as a plain number: the enumeration's is ten times as slow
 TOO_LONG = 10040  # WSAEMSGSIZE
+UNKNOWN = ("0.0.0.0", 0)  # noqa: S104 - whose datagram Windows does not say
 
 
 class Datagram(NamedTuple):
@@ -53,7 +54,7 @@ if sys.platform == "win32":
         except OSError as error:
             if error.winerror != TOO_LONG:
                 raise
-            return Datagram(b"", ("", 0), is_whole=False, stamp_ns=0, drops=0)
+            return Datagram(b"", UNKNOWN, is_whole=False, stamp_ns=0, drops=0)
         return Datagram(packet, address, is_whole=True, stamp_ns=0, drops=0)
 
     def share(shared: socket.socket, process: int) -> str:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from yehu_server.errors import ParameterError
-from yehu_server.live.midi.ports import MidiOptions, MidiPorts
+from yehu_server.live.midi.midi_inputs import MidiInputs, MidiOptions
 from yehu_server.live.midi.routes import Route, Router, check_routes, route_of
 
 NOTE = [0x90, 67, 90]
@@ -96,10 +96,10 @@ class Player:
         self.let_go.append(port)
 
 
-def opened(parts: int, *texts: str) -> tuple[list[Player], MidiPorts, list[str]]:
+def opened(parts: int, *texts: str) -> tuple[list[Player], MidiInputs, list[str]]:
     players, said = [Player() for _ in range(parts)], []
     options, memory = MidiOptions(routes=routes(*texts)), SimpleNamespace(inherited=[])
-    ports = MidiPorts(players, options, memory, range(parts), said.append)
+    ports = MidiInputs(players, options, memory, range(parts), said.append)
     for number, name in enumerate(("first", "second", "third")):
         ports.on_event({"event": "appeared", "port": name, "number": number})
     return players, ports, said

@@ -13,7 +13,8 @@ from yehu_server.errors import DeviceError
 from yehu_server.live.midi import input_process, systems
 from yehu_server.live.midi.feed import MidiFeed
 from yehu_server.live.midi.input_process import Inputs
-from yehu_server.live.midi.routes import Router, StableNames
+from yehu_server.live.midi.ports import StableNames
+from yehu_server.live.midi.routes import Router
 
 KEYS, KNOBS = "Keystep:Keystep MIDI 1 24:0", "nanoKONTROL:nanoKONTROL MIDI 1 28:0"
 WITHIN_S = 5.0

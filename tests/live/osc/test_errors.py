@@ -136,6 +136,16 @@ def test_a_malformed_packet_is_counted_and_answered(still):
     assert still.handler.counts.malformed == len(packets)
 
 
+def test_a_packet_that_is_none_or_too_long_is_answered_and_logged_like_a_wrong_message(still):
+    still.take(b"hello")
+    still.handler.refuse_long(still.peer)
+    reasons = [refused.arguments[1] for refused in still.peer.received()]
+    assert reasons[0] == "malformed packet: an address begins with /"
+    assert f"at most {limits.DATAGRAM} bytes" in reasons[1]
+    assert still.services.said == [f"OSC from peer:1: {reasons[0]}"]  # once for all
+    assert still.handler.counts.errors == 0  # they are counted as malformed, and as excess
+
+
 def test_a_wrong_message_is_logged_once_for_each_address_and_few_a_minute(still, wire):
     for _ in range(3):
         still.take(wire.message("/yehu/nots", 67.0, 90.0))

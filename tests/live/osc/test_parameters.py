@@ -180,11 +180,19 @@ def test_an_unknown_address_that_is_asked_for_is_named_with_a_near_one(still):
     assert "did you mean /yehu/playing/vibrato" in refused.arguments[1]
 
 
-def test_true_and_false_are_no_notes(still):
-    for words in ((True, 90.0), (67.0, True)):
-        (refused,) = still.ask("/note", *words)
-        assert "got T or F" in refused.arguments[1]
+def test_true_and_false_are_no_numbers_but_of_switches(still):
+    for call, *words in (
+        ("/note", True, 90.0),
+        ("/note", 67.0, True),
+        ("/note/off", True),
+        ("/pitch", True),
+        ("/bow", 0.2, True),
+        ("/subscribe", True),
+    ):
+        (refused,) = still.ask(call, *words)
+        assert "got T" in refused.arguments[1]
         still.clock.now += clients.FORGIVEN_S
+    assert still.ask("/bow/assist", False)[0].arguments == [0.0]
 
 
 def test_a_fader_as_velocity_is_told_once_of_the_range(still):

@@ -35,6 +35,7 @@ class Collector:
         self.packets: list[tuple[bytes, object, int]] = []
         self.answer: bytes | None = None
         self.gone_peers: list[object] = []
+        self.refused: list[object] = []
         self.go_on = threading.Event()
         self.go_on.set()
         self.is_idle = True  # whether it is not held up
@@ -60,6 +61,9 @@ class Collector:
             raise RuntimeError("as asked")
         if self.answer is not None:
             peer.send(self.answer)
+
+    def refuse_long(self, peer) -> None:
+        self.refused.append(peer)
 
     def due(self) -> list[tuple[Iterator[None], object, int]]:
         return []
@@ -204,7 +208,7 @@ def test_what_the_kernel_drops_is_counted(listen, client, keeper, until):
     assert ports.traffic.packets + ports.traffic.kernel_drops == 1001
 
 
-def test_longer_datagrams_are_dropped_and_counted(listen, client, keeper, until):
+def test_longer_datagrams_are_refused_and_counted(listen, client, keeper, until):
     ports = listen()
     sender = client(ports)
     for size in (limits.DATAGRAM + 1, 65507):
@@ -213,7 +217,7 @@ def test_longer_datagrams_are_dropped_and_counted(listen, client, keeper, until)
         sender.take(b"/" * size)
     until(lambda: len(keeper.packets) == 2, "the short ones")
     assert keeper.bodies == [b"/" * 4, b"/" * limits.DATAGRAM]
-    assert ports.traffic.excess == 2
+    assert ports.traffic.excess == len(keeper.refused) == 2
 
 
 @on_linux

@@ -16,8 +16,9 @@ from yehu_server.live.audio.output import OutputOptions
 from yehu_server.live.midi import input_process
 from yehu_server.live.midi.feed import MidiFeed
 from yehu_server.live.midi.input_process import Inputs
-from yehu_server.live.midi.ports import MidiOptions, MidiPorts
-from yehu_server.live.midi.routes import Router, StableNames, is_wanted
+from yehu_server.live.midi.midi_inputs import MidiInputs, MidiOptions
+from yehu_server.live.midi.ports import StableNames, is_opened
+from yehu_server.live.midi.routes import Router
 from yehu_server.live.options import PartOptions, ServeOptions
 from yehu_server.live.server import Server
 from yehu_server.params.table import FINGERS
@@ -292,7 +293,7 @@ def test_ports_are_wanted_by_words_of_their_name(subtests):
         ("Keystep MIDI", ["key piano"], False),
     ]:
         with subtests.test(name=name, patterns=patterns, wanted=wanted):
-            assert is_wanted(name, patterns) is wanted
+            assert is_opened(name, patterns, others=not patterns) is wanted
 
 
 def feed() -> MidiFeed:
@@ -372,7 +373,7 @@ def test_a_name_that_no_port_has_is_reported_once_and_heard_when_it_comes():
     assert studio.reported() == [("vanished", {"port": "breath"})]
     said = []
     player = SimpleNamespace(learning=SimpleNamespace())
-    ports = MidiPorts([player], MidiOptions(), SimpleNamespace(inherited=[]), [0], said.append)
+    ports = MidiInputs([player], MidiOptions(), SimpleNamespace(inherited=[]), [0], said.append)
     for _ in range(2):  # the MIDI system begins anew
         ports.on_event({"event": "missing", **missing})
     assert said == ["MIDI: no input matches 'breath' yet (there are: keys, synth)"]
@@ -389,7 +390,7 @@ def test_a_name_that_no_port_has_is_reported_once_and_heard_when_it_comes():
 def test_where_there_is_no_midi_the_cause_is_said(options, line):
     said = []
     player, memory = SimpleNamespace(learning=SimpleNamespace()), SimpleNamespace(inherited=[])
-    ports = MidiPorts([player], options, memory, [0], said.append)
+    ports = MidiInputs([player], options, memory, [0], said.append)
     ports.on_event({"event": "none", "reason": "no JACK server"})
     assert said[0].startswith(line)
     assert ports.problem == "no JACK server"

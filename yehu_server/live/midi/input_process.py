@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable, Sequence
 from yehu_server.core.midi.packing import MAX_BYTES
 from yehu_server.errors import DeviceError
 from yehu_server.live.midi.feed import PORTS, MidiFeed, SharedRing
-from yehu_server.live.midi.routes import Route, Router, StableNames, is_wanted
+from yehu_server.live.midi.ports import StableNames, is_opened, matches
+from yehu_server.live.midi.routes import Route, Router
 from yehu_server.live.midi.systems import MidiSystem, open_system
 from yehu_server.system import clocks
 from yehu_server.system.memory import open_shared
@@ -105,9 +106,8 @@ class Inputs:
         early = time.monotonic() - AGAIN_S
         for name, full_name in stable.items():
             is_due = self._refused.get(name, early) <= early
-            is_named = bool(self._patterns) and is_wanted(name, self._patterns)
-            wanted = is_named or (self._others and is_wanted(name, ()))
-            if name not in self._open and is_due and wanted:
+            is_wanted = is_opened(name, self._patterns, others=self._others)
+            if name not in self._open and is_due and is_wanted:
                 self._add(self._system, name, full_name)
         self._report_missing(stable)
         self._measure_pause()  # opening a port takes long, while others are heard
@@ -116,7 +116,7 @@ class Inputs:
         """Report patterns that no port matches, at the first poll."""
         present = list(names)
         for pattern in self._sought:
-            if not any(is_wanted(name, [pattern]) for name in present):
+            if not any(matches(name, pattern) for name in present):
                 self._parent.send("missing", pattern=pattern, present=present)
         self._sought.clear()
 

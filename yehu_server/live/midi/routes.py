@@ -1,60 +1,12 @@
-"""Which MIDI input plays which part, by names that stay the same when it is plugged in again."""
+"""Which MIDI input plays which part."""
 
-import itertools
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from yehu_server.errors import ParameterError
+from yehu_server.live.midi.ports import matches
 from yehu_server.live.part_addresses import no_part
-
-# ALSA appends numbers that change each time a device is plugged in; Windows counts ports.
-_CHANGING = re.compile(r"(?<=\S)\s+\d+(:\d+)?$")
-_THROUGH = re.compile(r"\bthrough\b|\bthru\b", re.IGNORECASE)
-
-
-def _base(name: str) -> str:
-    base = _CHANGING.sub("", name.strip())
-    # ALSA repeats the client: "Client:Client MIDI 1".
-    client, colon, port = base.partition(":")
-    return port if colon and port.startswith(client) else base
-
-
-class StableNames:
-    """Gives ports names that they keep, and get again when they come back.
-
-    Of several ports with one name the second is called ``#2``, and so on; it stays so when the
-    first one goes.
-    """
-
-    def __init__(self) -> None:
-        self._names: dict[tuple[str, int], str] = {}
-
-    def of(self, full_names: Iterable[str]) -> list[str]:
-        """The names of the ports that are present now, in order."""
-        present: dict[tuple[str, int], str] = {}
-        for full_name in full_names:
-            count = next(n for n in itertools.count() if (full_name, n) not in present)
-            present[full_name, count] = ""
-        named = {key: self._names[key] for key in present if key in self._names}
-        taken = set(named.values())
-        for key in present:
-            if key not in named:
-                base = _base(key[0])
-                choices = (base if n == 1 else f"{base} #{n}" for n in itertools.count(1))
-                named[key] = next(name for name in choices if name not in taken)
-                taken.add(named[key])
-        self._names = named
-        return [named[key] for key in present]
-
-
-def is_wanted(name: str, patterns: Sequence[str]) -> bool:
-    """Whether to open a port: by words of its name; without patterns, any but a through port."""
-    if not patterns:
-        return not _THROUGH.search(name)
-    wanted = [pattern.lower().split() for pattern in patterns]
-    return any(all(word in name.lower() for word in words) for words in wanted)
-
 
 CHANNELS = 16
 _CHANNEL = re.compile(r"(.*):([0-9]+)", re.DOTALL)
@@ -85,7 +37,7 @@ class Route:
     def takes(self, port: str, channel: int | None) -> bool:
         """Whether it has a message of a port: of a channel, or (None) of all."""
         is_of_channel = None in (self.channel, channel) or self.channel == channel
-        return is_of_channel and is_wanted(port, [self.words])
+        return is_of_channel and matches(port, self.words)
 
 
 def route_of(part: int, text: str) -> Route:

@@ -36,8 +36,10 @@ class Request:
         if not self.peer.takes_more:
             raise RefusedError("too many answers to you are waiting")
 
-    def numbers(self, least: int, most: int | None = None, *, after: int = 0) -> list[float]:
-        """The arguments `after` so many as finite numbers.
+    def numbers(
+        self, least: int, most: int | None = None, *, after: int = 0, switches: bool = False
+    ) -> list[float]:
+        """The arguments `after` so many as finite numbers; with `switches` T and F are 1 and 0.
 
         Raises CountError where their count is not within `least` to `most` (by default `least`),
         KindError where one is no number, RefusedError where one is not finite.
@@ -50,12 +52,13 @@ class Request:
             wanted = f"{least}" if least == most else f"{least} to {most}"
             plural = "" if wanted == "1" else "s"
             raise CountError(f"expected {wanted} argument{plural}, got {count}")
-        return [_number(self.arguments[place], place) for place in range(after, after + count)]
+        given = self.arguments[after:] if after else self.arguments
+        return [_number(one, place, switches) for place, one in enumerate(given, after)]
 
     @property
     def is_let_go(self) -> bool:
         """Whether it is what a momentary button sends as it is let go: 0 or F; see `numbers`."""
-        return self.numbers(0, 1) == [0.0]
+        return self.numbers(0, 1, switches=True) == [0.0]
 
     def word(self) -> str:
         """The only argument, a string; raises CountError where there is anything else."""
@@ -69,24 +72,22 @@ class Request:
         Raises RefusedError where there is anything else.
         """
         word = replace(self, arguments=self.arguments[:1]).word()
-        given = self.numbers(0, most, after=1)
+        given = self.numbers(0, most, after=1, switches=True)
         return [word, *(number != 0.0 for number in given), *[False] * (most - len(given))]
 
 
-def _number(argument: Any, place: int) -> float:
-    """A number from a float, an int, T or F; raises KindError, or RefusedError."""
-    if not isinstance(argument, int | float):
-        raise KindError(place, _kind(argument))
-    try:
-        number = float(argument)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise RefusedError(f"{number} is not finite")
-    return number
+def _number(argument: Any, place: int, switches: bool) -> float:
+    """A number from a float, an int, or a switch; raises KindError, or RefusedError."""
+    if isinstance(argument, float | int) and (switches or not isinstance(argument, bool)):
+        if math.isfinite(argument):
+            return float(argument)
+        raise RefusedError(f"{argument} is not finite")
+    raise KindError(place, _kind(argument))
 
 
 def _kind(argument: Any) -> str:
+    if isinstance(argument, bool):
+        return "T" if argument else "F"
     kinds = {str: "a string", bytes: "bytes", type(None): "nil", list: "an array"}
     return kinds.get(type(argument), f"a {type(argument).__name__}")
 

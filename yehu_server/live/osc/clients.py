@@ -75,6 +75,8 @@ class Clients:
         command of a shell, it is the only one that its host named. So Max hears the answers, whose
         senders and receivers have different ports.
         """
+        if not self._named:
+            return [peer]
         named = self._listeners(peer)
         own = [listener for listener, sender in named.items() if sender == peer]
         if not own and len(named) == 1 and not self.is_subscribed(peer):
@@ -100,15 +102,12 @@ class Clients:
     def echo(self, peer: Peer, addresses: Sequence[str]) -> None:
         """Send a peer the values that it has set, with the next flush."""
         for one in self.answered(peer):
-            self._echo(one, addresses)
-
-    def _echo(self, peer: Peer, addresses: Sequence[str]) -> None:
-        if len(self._clients) >= limits.CLIENTS_ECHOED and peer not in self._clients:
-            return
-        client = self._client(peer)
-        if client.muted_until <= time.monotonic():
-            client.to_send.update(dict.fromkeys(addresses))
-            self._is_waiting = True
+            if len(self._clients) >= limits.CLIENTS_ECHOED and one not in self._clients:
+                continue
+            client = self._client(one)
+            if client.muted_until <= time.monotonic():
+                client.to_send.update(dict.fromkeys(addresses))
+                self._is_waiting = True
 
     def mute(self, peer: Peer, seconds: float) -> None:
         """Do not answer a peer for some time: two servers would answer each other for ever."""

@@ -73,14 +73,19 @@ class CallContext:
         return {address: values[address] for address in own}
 
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
-        """Send a peer the reason why its message to an address was refused."""
+        """Send a peer the reason why its message to an address was refused; count and log it."""
         self.counts.errors += 1
+        self.report_error(peer, address, reason)
+
+    def report_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
+        """The same for what is counted elsewhere; `address` may be empty, where none was read."""
         self.unlogged += 1
         if self._is_new_error(address):
             reason = reason if isinstance(reason, str) else reason()
             hidden = self.unlogged - 1
             more = f" ({hidden} error{'s' * (hidden > 1)} before it not shown)" * (hidden > 0)
-            self.log(f"OSC from {peer.host}: {shortened(address)}: {shortened(reason)}{more}")
+            what = f"{shortened(address)}: {shortened(reason)}" if address else shortened(reason)
+            self.log(f"OSC from {peer.host}: {what}{more}")
             self.unlogged = 0
         self.clients.send_error(peer, address, reason)
 

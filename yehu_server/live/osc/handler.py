@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from yehu_server.errors import RefusedError, YehuError
+from yehu_server.live import traffic_limits as limits
 from yehu_server.live.osc.all_calls import NAMED_IN_FULL, acts, own_calls, owners
 from yehu_server.live.osc.call import Request
 from yehu_server.live.osc.context import Act, CallContext
@@ -31,6 +32,7 @@ DUE_AT_ONCE = 512  # scheduled messages, which then take turns with others
 LONGEST_WAIT_S = 0.5
 FAR_S, LONGEST_AHEAD_S = 60.0, 3600.0  # a time tag so far ahead is told, or refused
 MAX_FAR = 64  # hosts that are told of, each once
+IGNORED = (f"{PREFIX}/error", f"{PREFIX}/moved")
 
 
 class OscHandler:
@@ -45,20 +47,17 @@ class OscHandler:
         self._arrivals = Arrivals(self._players[0].frame_of, self._players[0].instrument.rate)
         self._queues = SenderQueues([player.instrument for player in self._players])
         self._far: set[str] = set()  # hosts that were told of
-        self._acts: dict[str, Act] = {}
+        found: dict[str, Act] = {}
         for group in self._groups:
-            self._acts |= acts(group, context)
-        self.addresses = context.addresses = tuple(PREFIX + address for address in self._acts)
-        whole = (one for one in self._acts if split_group(one)[1] in NAMED_IN_FULL)
-        self._named_in_full = {PREFIX + address for address in whole}
-        # Messages of another server that was made to send us its values.
-        self._answers: dict[str, Act] = {
-            f"{PREFIX}/{answer}": lambda _call: None for answer in ("error", "moved")
+            found |= acts(group, context)
+        self._named_in_full = {
+            PREFIX + one for one in found if split_group(one)[1] in NAMED_IN_FULL
         }
-        for group in self._groups:
-            self._answers[f"{PREFIX}{group}/subscribed"] = lambda call: self.clients.mute(
-                call.peer, within_an_hour(call.numbers(1)[0])
-            )
+        self._acts = {PREFIX + address: act for address, act in found.items()}
+        self.addresses = context.addresses = tuple(self._acts)
+        # Messages of another server that was made to send us its values.
+        self._acts |= dict.fromkeys(IGNORED, lambda _call: None)
+        self._acts |= {f"{PREFIX}{group}/subscribed": self._mute for group in self._groups}
         self._mappings: list[Mapping] = []
         self._own: dict[str, Act] = {}
 
@@ -77,38 +76,45 @@ class OscHandler:
         `frame`: of one message that waited for its time; without it, the packet takes effect as
         it arrived, and its bundles at their times.
         """
-        now, is_late, is_due, is_first = clocks.now_s(), False, frame is not None, True
+        now, is_late, is_due = clocks.now_s(), False, frame is not None
         frame = self._arrivals.frame_of(arrived_ns) if frame is None else frame
         try:
-            for message in steps(packet):
-                if not is_first:  # between two, so that one alone is a single step
+            for number, message in enumerate(steps(packet)):
+                if number:  # between two, so that one alone is a single step
                     yield
-                is_first = False
                 if message is None:
                     continue
                 self.counts.messages += not is_due
+                actions = self._actions(message.address, peer)
                 if message.due_s is not None and message.due_s > now:
-                    if self._actions(message.address, peer):
+                    if actions:
                         self._keep(message, peer)
                     continue
                 self.counts.late_bundles += message.due_s is not None and not is_late
                 is_late |= message.due_s is not None
                 call = Request(message.arguments, message.payload, peer, frame)
-                queue = self._queues.queue_of(peer, frame)
-                actions = self._actions(message.address, peer).items()
-                for number, (address, action) in enumerate(actions):
-                    if number:
+                for turn, (address, action) in enumerate(actions.items()):
+                    if turn:
                         yield
-                    sender = SENDER.set(queue)
-                    try:  # one refusal does not stop the others that match a pattern
-                        action(call)
-                    except YehuError as error:
-                        self.context.send_error(peer, address, str(error))
-                    finally:
-                        SENDER.reset(sender)
+                    self._carry_out(action, call, address)
         except PacketError as error:
             self.counts.malformed += 1
-            self.clients.send_error(peer, "", f"malformed packet: {error}")
+            self.context.report_error(peer, "", f"malformed packet: {error}")
+
+    def _carry_out(self, action: Act, call: Request, address: str) -> None:
+        """Carry out a call; one refusal does not stop the others that match a pattern."""
+        sender = SENDER.set(self._queues.queue_of(call.peer, call.frame))
+        try:
+            action(call)
+        except YehuError as error:
+            self.context.send_error(call.peer, address, str(error))
+        finally:
+            SENDER.reset(sender)
+
+    def refuse_long(self, peer: Peer) -> None:
+        """Refuse a datagram that is too long to be received whole."""
+        reason = f"a datagram has at most {limits.DATAGRAM} bytes; send longer packets by TCP"
+        self.context.report_error(peer, "", reason)
 
     def _keep(self, message: Message, peer: Peer) -> None:
         """Keep a message until its time; tell of a sender whose clock is far from this one."""
@@ -157,13 +163,10 @@ class OscHandler:
 
     def _found(self, address: str) -> dict[str, Act]:
         """By address, what carries out the calls at one or at a pattern; none where unknown."""
-        known = address.removeprefix(PREFIX)
-        if address in self._answers:
-            return {address: self._answers[address]}
-        if known in self._acts and known != address:
-            return {address: self._acts[known]}
+        if act := self._acts.get(address):
+            return {address: act}
         own = self._own_acts()
-        if is_own(address) or split_group(known)[0]:
+        if is_own(address) or split_group(address.removeprefix(PREFIX))[0]:
             own = own | self._learn_acts(address, own)
         if address in own:
             return {address: own[address]}
@@ -172,8 +175,11 @@ class OscHandler:
             reached = [one for one in found if one not in self._named_in_full]
             if not reached:
                 raise RefusedError(f"{found[0]} takes no pattern: send its whole address")
-            return {one: own.get(one) or self._acts[one.removeprefix(PREFIX)] for one in reached}
+            return {one: own.get(one) or self._acts[one] for one in reached}
         return {}
+
+    def _mute(self, call: Request) -> None:
+        self.clients.mute(call.peer, within_an_hour(call.numbers(1)[0]))
 
     def _own_acts(self) -> dict[str, Act]:
         """For addresses that mappings bind; without a part, those of `owners`."""
@@ -200,7 +206,7 @@ class OscHandler:
 
         def hear(call: Request) -> None:
             for player in hearing:
-                player.learning.hear_address(plain, call.numbers(1)[0])
+                player.learning.hear_address(plain, call.numbers(1, switches=True)[0])
             if move is not None:
                 move(call)
 

@@ -7,6 +7,7 @@ which subscribers are sent hundreds at a time, takes it seven times as long.
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 from yehu_server.live import traffic_limits as limits
@@ -14,6 +15,7 @@ from yehu_server.live import traffic_limits as limits
 BUNDLE = b"#bundle\0"
 IMMEDIATELY = (0, 1)  # as a time tag
 SECONDS_1900_TO_1970 = 2_208_988_800
+HEADS_KEPT, LONGEST_KEPT = 1024, 256  # addresses with type tags, and their bytes
 
 
 class PacketError(ValueError):
@@ -46,23 +48,16 @@ def steps(packet: bytes) -> Iterator[Message | None]:
     it would take fifty times the memory. Raises PacketError where any part of it is damaged; before
     the first message.
     """
-    data = memoryview(packet)
     try:
-        if packet.startswith(BUNDLE):
-            for _ in _content(data, None, limits.NESTING):
-                yield None
-        yield from _content(data, None, limits.NESTING)
+        if not packet.startswith(BUNDLE):
+            yield _message(packet, None)
+            return
+        data = memoryview(packet)
+        for _ in _bundle(data, None, limits.NESTING):
+            yield None
+        yield from _bundle(data, None, limits.NESTING)
     except (struct.error, UnicodeDecodeError) as error:
         raise PacketError("cut short, or not text") from error
-
-
-def _content(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message | None]:
-    if bytes(data[:8]) == BUNDLE:
-        yield from _bundle(data, due_s, depth)
-    elif bytes(data[:1]) == b"/":
-        yield _message(data, due_s)
-    else:
-        raise PacketError("an address begins with /")
 
 
 def _bundle(data: memoryview, due_s: float | None, depth: int) -> Iterator[Message | None]:
@@ -78,23 +73,47 @@ def _bundle(data: memoryview, due_s: float | None, depth: int) -> Iterator[Messa
         start, place = place + 4, place + 4 + size
         if size <= 0 or size % 4 != 0 or place > len(data):
             raise PacketError("an element of a bundle has a wrong length")
-        yield from _content(data[start:place], due_s, depth - 1)
+        if data[start : start + 8] == BUNDLE:
+            yield from _bundle(data[start:place], due_s, depth - 1)
+        else:
+            yield _message(bytes(data[start:place]), due_s)
 
 
-def _message(data: memoryview, due_s: float | None) -> Message:
-    reader = _Reader(data)
-    address = reader.text()
-    payload = bytes(data[reader.place :])
-    if not payload:  # old senders omit the tags where there are no arguments
-        return Message(address, [], due_s)
-    tags = reader.text()
+def _message(data: bytes, due_s: float | None) -> Message:
+    if data[:1] != b"/":
+        raise PacketError("an address begins with /")
+    tags_at = _after_text(data, 0)
+    if tags_at == len(data):  # old senders omit the tags where there are no arguments
+        return Message(_text(data, 0), [], due_s)
+    start = _after_text(data, tags_at)
+    read = _head if start <= LONGEST_KEPT else _head.__wrapped__
+    address, tags, numbers = read(data[:start], tags_at)
+    if numbers is None:
+        arguments, end = _arguments(data, tags, start)
+    else:
+        arguments, end = list(numbers.unpack_from(data, start)), start + numbers.size
+    if end != len(data):
+        raise PacketError("more or fewer arguments than type tags")
+    return Message(address, arguments, due_s, data[tags_at:])
+
+
+@lru_cache(HEADS_KEPT)
+def _head(head: bytes, tags_at: int) -> tuple[str, str, struct.Struct | None]:
+    """Address and tags before a message's arguments, and these where all have fixed lengths."""
+    address, tags = _text(head, 0), _text(head, tags_at)
     if not tags.startswith(","):
         raise PacketError("no type tags")
     if len(tags) - 1 > limits.ARGUMENTS:
         raise PacketError("too many arguments")
-    arguments: list[Any] = []
-    lists = [arguments]
-    for tag in tags[1:]:
+    is_fixed = FIXED.keys() >= set(tags[1:])
+    form = struct.Struct(">" + "".join(FIXED[tag] for tag in tags[1:])) if is_fixed else None
+    return address, tags[1:], form
+
+
+def _arguments(data: bytes, tags: str, place: int) -> tuple[list[Any], int]:
+    """The arguments of a message, which begin at a place, and where they end."""
+    lists: list[list[Any]] = [[]]
+    for tag in tags:
         if tag == "[":
             if len(lists) > limits.NESTING:
                 raise PacketError("arrays are nested too deep")
@@ -103,63 +122,59 @@ def _message(data: memoryview, due_s: float | None) -> Message:
         elif tag == "]" and len(lists) > 1:
             lists.pop()
         else:
-            lists[-1].append(reader.argument(tag))
-    if len(lists) > 1 or reader.place != len(data):
+            argument, place = _argument(data, tag, place)
+            lists[-1].append(argument)
+    if len(lists) > 1:
         raise PacketError("more or fewer arguments than type tags")
-    return Message(address, arguments, due_s, payload)
+    return lists[0], place
 
 
-class _Reader:
-    """Reads a message from front to back; raises struct.error or PacketError beyond its end."""
+def _argument(data: bytes, tag: str, place: int) -> tuple[Any, int]:
+    """An argument at a place, and where the next begins."""
+    if tag in FIXED:
+        form = f">{FIXED[tag]}"
+        (value,) = struct.unpack_from(form, data, place)
+        return value, place + struct.calcsize(form)
+    if tag in CONSTANTS:
+        return CONSTANTS[tag], place
+    if tag in "sS":
+        end = _after_text(data, place)
+        return _text(data, place), end
+    if tag == "b":
+        (size,) = struct.unpack_from(">i", data, place)
+        start = place + 4
+        if size < 0:
+            raise PacketError("a blob has a wrong length")
+        return data[start : start + size], _padded_to(start + size, data)
+    raise PacketError(f"unknown type {tag!r}")
 
-    def __init__(self, data: memoryview) -> None:
-        self._data = data
-        self._bytes = bytes(data)
-        self.place = 0
 
-    def text(self) -> str:
-        end = self._bytes.find(b"\0", self.place)
-        if end < 0:
-            raise PacketError("a string without an end")
-        text = self._bytes[self.place : end].decode()
-        self._skip_to(end + 1)
-        return text
+def _text(data: bytes, place: int) -> str:
+    return data[place : data.index(b"\0", place)].decode()
 
-    def argument(self, tag: str) -> Any:
-        if tag in FIXED:
-            form = FIXED[tag]
-            (value,) = form.unpack_from(self._data, self.place)
-            self.place += form.size
-            return value
-        if tag in CONSTANTS:
-            return CONSTANTS[tag]
-        if tag in "sS":
-            return self.text()
-        if tag == "b":
-            (size,) = struct.unpack_from(">i", self._data, self.place)
-            start = self.place + 4
-            if size < 0:
-                raise PacketError("a blob has a wrong length")
-            self._skip_to(start + size)
-            return self._bytes[start : start + size]
-        raise PacketError(f"unknown type {tag!r}")
 
-    def _skip_to(self, place: int) -> None:
-        """Continue at the next multiple of four."""
-        self.place = (place + 3) & ~3
-        if self.place > len(self._data):
-            raise PacketError("cut short")
+def _after_text(data: bytes, place: int) -> int:
+    """Where what follows a string begins."""
+    end = data.find(b"\0", place)
+    if end < 0:
+        raise PacketError("a string without an end")
+    return _padded_to(end + 1, data)
+
+
+def _padded_to(place: int, data: bytes) -> int:
+    """The next multiple of four; raises PacketError beyond the end."""
+    place = (place + 3) & ~3
+    if place > len(data):
+        raise PacketError("cut short")
+    return place
 
 
 class Bang:
     """The argument without a value of type I, "infinitum" or "impulse"."""
 
 
-FIXED = {
-    tag: struct.Struct(f">{form}")
-    for tag, form in {"i": "i", "h": "q", "f": "f", "d": "d", "t": "8s", "c": "4s", "r": "4s",
-                      "m": "4s"}.items()
-}  # fmt: skip
+# Forms of arguments, by type tag, and arguments without a value.
+FIXED = dict(zip("ihfdtcrm", ("i", "q", "f", "d", "8s", "4s", "4s", "4s"), strict=True))
 CONSTANTS = {"T": True, "F": False, "N": None, "I": Bang()}
 
 
@@ -173,9 +188,9 @@ def pack(address: str, *arguments: float | str | bool) -> bytes:
             tags += "T" if argument else "F"
         elif isinstance(argument, int):
             tag = "i" if -(1 << 31) <= argument < 1 << 31 else "h"
-            tags, data = tags + tag, data + FIXED[tag].pack(argument)
+            tags, data = tags + tag, data + struct.pack(f">{FIXED[tag]}", argument)
         else:
-            tags, data = tags + "f", data + FIXED["f"].pack(argument)
+            tags, data = tags + "f", data + struct.pack(">f", argument)
     return _padded(address) + _padded(tags) + data
 
 

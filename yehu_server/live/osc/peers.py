@@ -125,8 +125,8 @@ class Peer(ABC):
         """Whether it may be sent more than it must be."""
 
     @abstractmethod
-    def send(self, packet: bytes) -> None:
-        """Send a packet, or drop it where the limit is reached."""
+    def send(self, *packets: bytes) -> None:
+        """Send packets, or drop those beyond its limit."""
 
     def at(self, _port: int) -> Peer:
         """A peer at another port of the same host; a connection has none."""
@@ -188,17 +188,18 @@ class UdpPeer(Peer):
         now = time.monotonic()
         return all(bucket.left(now) > 0.0 for bucket in self._buckets)
 
-    def send(self, packet: bytes) -> None:
+    def send(self, *packets: bytes) -> None:
         """See `Peer`."""
-        if not self.takes_more:
-            self._traffic.unsent += 1
-            return
-        for bucket in self._buckets:
-            bucket.spend(len(packet))
-        try:
-            self._socket.sendto(packet, self._address)
-        except OSError:
-            self._traffic.unsent += 1
+        for packet in packets:
+            if not self.takes_more:
+                self._traffic.unsent += 1
+                continue
+            for bucket in self._buckets:
+                bucket.spend(len(packet))
+            try:
+                self._socket.sendto(packet, self._address)
+            except OSError:
+                self._traffic.unsent += 1
 
     def at(self, port: int) -> UdpPeer:
         """See `Peer`; bytes sent there count for this peer too."""
@@ -244,12 +245,12 @@ class TcpPeer(Peer):
         reading = selectors.EVENT_READ if self.reads else 0
         return reading | (selectors.EVENT_WRITE if self._unsent else 0)
 
-    def send(self, packet: bytes) -> None:
+    def send(self, *packets: bytes) -> None:
         """See `Peer`; packets are dropped while the peer does not read."""
         if len(self._unsent) > limits.UNSENT:
-            self._traffic.unsent += 1
+            self._traffic.unsent += len(packets)
         elif not self.is_finished:
-            self._unsent += self.framing.wrap(packet)
+            self._unsent += b"".join(map(self.framing.wrap, packets))
             self.flush()
 
     def flush(self) -> None:

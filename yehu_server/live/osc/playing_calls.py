@@ -51,7 +51,7 @@ class PartCalls(GroupCalls):
         if len(call.arguments) == 1 and isinstance(call.arguments[0], str) and address in NAMES:
             value = named(param, call.arguments[0])
         else:
-            (value,) = call.numbers(1)
+            (value,) = call.numbers(1, switches=True)
         self._set(call, address, there_is(param, _whole(param, value)))
         self._echo(call.peer, [address])
 
@@ -62,13 +62,13 @@ class PartCalls(GroupCalls):
 
     def set_unit(self, call: Request, param: Param) -> None:
         """Set a parameter by 0 to 1 of its range."""
-        (unit,) = call.numbers(1)
+        (unit,) = call.numbers(1, switches=True)
         self._set(call, param.address, _whole(param, offered(param).from_unit(unit)))
         self._echo(call.peer, [param.address + UNIT])
 
     def move(self, call: Request, bind: Bind) -> None:
         """Move what the mapping binds to an address of the user's own."""
-        (value,) = call.numbers(1)
+        (value,) = call.numbers(1, switches=True)
         self._player.move(bind.source, value, frame=call.frame)
         lo, hi = sorted(bind.input_range)
         margin = (hi - lo) / 100.0  # faders overshoot by rounding
@@ -93,8 +93,6 @@ class PartCalls(GroupCalls):
 
     @plays("/note", "Begins a note; velocity 0 ends it.", NOTE, VELOCITY)
     def _note(self, call: Request) -> None:
-        if any(isinstance(each, bool) for each in call.arguments):
-            raise RefusedError("expected a note and a velocity, got T or F")
         note, velocity = call.numbers(2)
         if velocity == 0.0:
             self._player.key_off(note, frame=call.frame)

@@ -146,21 +146,28 @@ class OscPorts:
             if datagram.stamp_ns:
                 arrived_ns = min(datagram.stamp_ns + to_monotonic_ns, now_ns)
             self.traffic.kernel_drops = datagram.drops or self.traffic.kernel_drops
-            is_own = address[1] == self.port and is_here(address[0])  # subscribed to itself
-            if is_own or address[0] not in self._allowed:
+            peer = self._peer(address)
+            if peer is None:
                 self.traffic.refused += 1
                 continue
             self.traffic.packets += 1
-            peer = self._peer(address)
+            if not datagram.is_whole:
+                self.traffic.excess += 1
+                self._handler.refuse_long(peer)
+                continue
             steps = self._handler.handle(packet, peer, arrived_ns)
-            is_next = datagram.is_whole and not self._queue and now_ns < until_ns
+            is_next = not self._queue and now_ns < until_ns
             if is_next and next(steps, DONE) is DONE:
                 continue
-            if not (datagram.is_whole and self._queue.add(steps, peer, len(packet))):
+            if not self._queue.add(steps, peer, len(packet)):
                 self.traffic.excess += 1
 
-    def _peer_of(self, address: Address) -> UdpPeer:
-        host = address[0]
+    def _peer_of(self, address: Address) -> UdpPeer | None:
+        """The peer of an address; None where it may not send, or is this port itself."""
+        host, port = address[:2]
+        is_own = port == self.port and is_here(host)  # subscribed to itself
+        if is_own or host not in self._allowed:
+            return None
         buckets = [answer_bucket()] if is_here(host) else [self._to_host(host), self._to_all]
         return self._peer_at(address, buckets)
 

@@ -17,7 +17,7 @@ from yehu_server.core.midi.packing import unpacked
 if TYPE_CHECKING:
     from yehu_server.core.engine.ensemble import Ensemble
     from yehu_server.live.audio.output import OutputState
-    from yehu_server.live.midi.ports import MidiPorts
+    from yehu_server.live.midi.midi_inputs import MidiInputs
     from yehu_server.live.osc.peers import Traffic, WebTraffic
     from yehu_server.playing.delay import Delay
     from yehu_server.playing.player import Player
@@ -72,7 +72,7 @@ class StatusSources:
     scheduled: int
     subscribers: int
     web: WebTraffic
-    midi: MidiPorts | None
+    midi: MidiInputs | None
     recording: str
     uptime_s: float
 

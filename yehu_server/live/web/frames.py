@@ -14,7 +14,7 @@ def frame_of(payload: bytes, kind: int = BINARY) -> bytes:
     """A message as the server sends it (RFC 6455, section 5.2)."""
     size = len(payload)
     if size < SHORT:
-        head = struct.pack(">BB", kind, size)
+        head = bytes((kind, size))
     elif size < MIDDLE:
         head = struct.pack(">BBH", kind, 126, size)
     else:

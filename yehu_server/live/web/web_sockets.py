@@ -55,13 +55,13 @@ class WebPeer(Peer):
         """See `Peer`."""
         return self._unsent_bytes < limits.UNSENT // 2
 
-    def send(self, packet: bytes) -> None:
+    def send(self, *packets: bytes) -> None:
         """See `Peer`."""
         if self._unsent_bytes > limits.UNSENT:
-            self._traffic.unsent += 1
+            self._traffic.unsent += len(packets)
             return
-        self._sent += len(packet)
-        self._waiting.append(packet)
+        self._sent += sum(map(len, packets))
+        self._waiting += packets
         if not self._is_called:
             self._is_called = True
             with contextlib.suppress(RuntimeError):  # the loop has ended

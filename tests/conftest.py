@@ -65,7 +65,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             if item.get_closest_marker("slow"):
                 item.add_marker(pytest.mark.skip(reason="slow: run with --all"))
         if not any("::" in argument for argument in config.args):
-            left_out = set(combinations(items))
+            quick = [item for item in items if not item.get_closest_marker("slow")]
+            left_out = set(combinations(quick))
             config.hook.pytest_deselected(items=list(left_out))
             items[:] = [item for item in items if item not in left_out]
     place = places(list(dict.fromkeys(item.path for item in items)))

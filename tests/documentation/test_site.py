@@ -1,13 +1,12 @@
-"""The documentation site: every page is there, reads as on GitHub, and leads somewhere."""
+"""The documentation site: every page is there and leads somewhere."""
 
-import re
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 import soundfile
 from live.page.browser import drive, missing, running
-from pages import PAGES, ROOT
+from pages import ROOT
 
 import yehu_server as yehu
 from yehu_server import body, plot
@@ -58,16 +57,6 @@ def site(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def content(site):
     return lambda name: Elements((site / name).read_text(encoding="utf-8"))
-
-
-def test_a_page_begins_with_its_one_title_and_says_what_it_is_for(subtests):
-    for page in PAGES:
-        with subtests.test(page.name):
-            assert len(re.findall(r"^# ", page.prose, re.MULTILINE)) == 1
-            if "/decisions/" not in page.name and page.name != "SECURITY.md":
-                title, first, *_ = page.prose.split("\n\n")
-                assert re.fullmatch(r"# [^\n]+[^.\n]", title.strip())
-                assert re.match(r"[A-Z0-9`一-鿿][^|]*[.:]", first.lstrip(), re.DOTALL), first
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ import pytest
 from held_notes import HOP, RATE, Playing
 
 from yehu_server.core.controls.slots import FINGER_POSITION, FINGER_PRESS, SLOTS
+from yehu_server.core.player.right_hand import QUICK_SHARE
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 
@@ -160,10 +161,13 @@ def test_strokes_in_a_hurry_come_sooner_and_lighter():
     assert wrong == []
 
 
-def test_a_quick_stroke_on_the_outer_string_is_heavier_once_the_bow_has_turned():
+def test_a_quick_stroke_on_the_outer_string_turns_as_heavily_as_it_may_and_a_heavy_one_as_it_is():
     wrong = []
-    for key, attack, heavier in ((74, 20.0, True), (74, 200.0, False), (67, 20.0, False)):
-        playing = Playing(variation=0.0, listening=0.0, phrasing=0.0, attack=attack)
+    for key, attack, asked, heavier in (
+        *((76, 20.0, 0.4, True), (76, 200.0, 0.4, False), (67, 20.0, 0.4, False)),
+        (76, 20.0, 0.8, False),
+    ):
+        playing = Playing(variation=0.0, listening=0.0, phrasing=0.0, attack=attack, pressure=asked)
         playing.on(key)
         playing.play(0.4)
         playing.off(key)
@@ -171,8 +175,8 @@ def test_a_quick_stroke_on_the_outer_string_is_heavier_once_the_bow_has_turned()
         speed, pressure = playing.play(0.12, "value")[0][:, [SLOTS.bow_speed, SLOTS.bow_pressure]].T
         turned = int(np.argmax(speed * speed[0] < 0.0))
         is_heavier = pressure[turned] > 2.0 * pressure[-1] and pressure[0] < 0.8 * pressure[turned]
-        if is_heavier != heavier:
-            wrong.append((key, attack, pressure[[0, turned, -1]]))
+        if is_heavier != heavier or pressure.max() > max(QUICK_SHARE, 1.05 * pressure[-1]):
+            wrong.append((key, attack, asked, pressure[[0, turned, -1]]))
     assert wrong == []
 
 

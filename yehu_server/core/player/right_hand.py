@@ -51,12 +51,13 @@ MIN_DYNAMICS = 0.012  # below, at the first two steps of a controller, the bow i
 # period. Tried at 0.3 to 0.9 and 60 to 200 ms, F4 to B4, at three dynamics. Hurried strokes have
 # little pressure already.
 INNER_ATTACK_FRACTION, MIN_INNER_ATTACK, INNER_ATTACK_MS = 0.65, 0.4, 150.0
-# A quick stroke on the outer string turns with so much more pressure, one that takes
-# SLOW_ATTACK_MS, as a single note's, with none: the sooner the bow has its speed, the more force
-# it needs until the string has caught it [Guettler], or that slips twice in a period for all of a
-# short note. Before the bow has turned the old note would burst out. Tried at 1.7 to 3.6, on notes
-# of 0.1 to 0.3 s; up to 80 ms, single high notes of an erhu were 19 cents flat.
-QUICK_TOUCH, SLOW_ATTACK_MS = 2.8, 40.0
+# A quick stroke on the outer string turns with this share of Schelleng's limit, where it has less;
+# one that takes SLOW_ATTACK_MS, as a single note's, with no more: the sooner the bow has its speed,
+# the more force it needs until the string has caught it [Guettler], or that slips twice in a period
+# for all of a short note. Before the bow has turned the old note would burst out. Tried at 1 to 2
+# on a yehu and an erhu, notes of 0.1 to 0.3 s; by a factor of 2.8 on what each note has, those that
+# have much were rough. Up to 80 ms, single high notes of an erhu were 19 cents flat.
+QUICK_SHARE, SLOW_ATTACK_MS = 1.25, 40.0
 # Louder is heavier and nearer to the bridge [Schoonderwaldt], at phrasing USUAL_PHRASING: powers of
 # what dynamics and velocity do to the speed, and the largest factor. By ear.
 ARM_FORCE, ARM_PLACE, MAX_ARM = 0.25, -0.2, 1.2
@@ -166,13 +167,13 @@ def set_attack_pressure(p: Any, c: Any) -> None:
     """
     usual = p.sent[BOW.pressure]
     quick = (SLOW_ATTACK_MS - gestures.attack_ms(p)) / (SLOW_ATTACK_MS - HURRIED_ATTACK_MS)
-    touch = 1.0 + (QUICK_TOUCH - 1.0) * min(max(quick, 0.0), 1.0)
+    touched = usual + min(max(quick, 0.0), 1.0) * (QUICK_SHARE - usual)
     begins, ms = attack_pressure_factor(p) * usual, ATTACK_PRESSURE_MS
     if p.string == 0:
         lighter = max(INNER_ATTACK_FRACTION * usual, MIN_INNER_ATTACK)
         begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), INNER_ATTACK_MS
-    elif touch * usual > begins:
-        p.touched_from, p.touched_with = usual, touch * usual
+    elif touched > begins:
+        p.touched_from, p.touched_with = usual, touched
         move_parameter(p, c, BOW.pressure, p.touched_with, 0.5 * gestures.attack_ms(p))
         return
     if begins != usual:

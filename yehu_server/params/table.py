@@ -289,13 +289,16 @@ def named(param: Param, name: str) -> float:
 
 def offered(param: Param) -> Param:
     """A parameter with what there is to choose as its range: messages may have higher numbers."""
-    return replace(param, hi=max(NAMES.get(param.address, {}).values(), default=param.hi))
+    names = NAMES.get(param.address)
+    return replace(param, hi=max(names.values())) if names else param
 
 
 def there_is(param: Param, value: float) -> float:
     """A value that a person chose; of a choice, ParameterError where it has no such number."""
+    if not param.is_choice:
+        return value
     lo, hi = param.lo, offered(param).hi
-    if param.is_choice and not (value.is_integer() and lo <= value <= hi):
+    if not (value.is_integer() and lo <= value <= hi):
         wanted = f"expected a whole number from {lo:g} to {hi:g}, got {value:g}"
         raise ParameterError(f"{param.address}: {wanted}")
     return value

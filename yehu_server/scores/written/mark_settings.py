@@ -51,10 +51,9 @@ GESTURES: Mapping[str, tuple[str, float]] = {
 }
 FORCED_GESTURE = "sforzando", 0.4
 PLUCKED = {"pizzicato", "snap-pizzicato"}
-# Marks that may set parameters.
-SETTING = {
-    *CRISP, *SLIDES, *GESTURES, *PLUCKED, "articulation", "up-bow", "down-bow", "inner-string",
-    "outer-string", "open-string", "finger", "tremolo", "vibrato", "harmonic",
+# Marks that set no parameter: notes that have no others are many.
+SET_NOTHING = {
+    "trill", "mordent", "inverted-mordent", "turn", "inverted-turn", "accent", "tenuto", "fermata",
 }  # fmt: skip
 
 
@@ -154,7 +153,7 @@ def is_plucked(note: Note, active: Active) -> bool:
 
 def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = YEHU) -> Values:
     """Return the parameters that a note's marks and the signs before it set, by address."""
-    if active is PLAIN and SETTING.isdisjoint(note.names):
+    if active is PLAIN and note.names <= SET_NOTHING:
         return {}
     values, number = _held(active), articulation_of(note, active, quarter_s)
     if not (note.marks or values or active.plucked or number):

@@ -33,6 +33,16 @@ def test_messages_of_any_kind_come_back_from_columns():
     assert events.channel.tolist() == [3] * 6 + [0, 15, -1, 2]
 
 
+def test_more_events_come_before_those_at_their_places():
+    first, second, third = (ScoreEvent(at, Setting(f"/{at}", at), at) for at in (1.0, 2.0, 3.0))
+    key = ScoreEvent(2.0, mido.Message("note_on", note=60), 2.0)
+    events = Events.of([first, key])
+    assert [*events.with_before([(2, third), (1, second), (1, key)])] == [
+        first, second, key, key, third
+    ]  # fmt: skip
+    assert [*events.with_before([])] == [first, key]
+
+
 def test_a_key_struck_again_ends_its_note():
     struck = [(0x90, 60, 9), (0x90, 62, 9), (0x90, 60, 9), (0x90, 62, 0), (0x91, 60, 9)]
     messages = map(mido.Message.from_bytes, struck)

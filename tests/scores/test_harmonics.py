@@ -13,6 +13,7 @@ from yehu_server.rendering import options as rendering
 from yehu_server.rendering.options import Options
 from yehu_server.rendering.performance import Performance
 from yehu_server.scores.jianpu.reader import parse_jianpu
+from yehu_server.scores.written.in_range import moved_part
 from yehu_server.scores.written.mark_settings import harmonics_of
 from yehu_server.scores.written.notated import Mark, Note, Part, Sign, Tempo, Written
 from yehu_server.scores.written.performed import performed
@@ -111,3 +112,11 @@ def test_a_marked_slide_and_a_sprung_note_are_heard_after_a_leap():
     assert heard(slid, 1.3) == pytest.approx(72.0, abs=0.15)
     sprung, _ = played(parse_jianpu('1=G 4=60 2 6 ^"跳弓"'.encode()), 0.5)
     assert heard(sprung, 1.06) == pytest.approx(76.0, abs=0.15)
+
+
+def test_a_harmonic_above_the_highest_stopped_note_is_not_moved():
+    highest = max(harmonics_of(YEHU))
+    assert highest > YEHU.highest
+    for marks, is_moved in (((Mark("harmonic"),), False), ((), True)):
+        note = Note(Fraction(0), Fraction(1), highest, marks)
+        assert (moved_part(Part("", (note,)))[0].notes != (note,)) == is_moved

@@ -110,8 +110,8 @@ def test_a_fermata_holds_its_note_and_lets_all_parts_wait():
 
 
 def test_a_caesura_is_a_silence():
-    before, after = play(*four(1, "caesura")).notes[1:3]
-    assert before.length_s == pytest.approx(QUARTER_S)
+    before, after = play(note(0, 2, 69, "caesura"), note(2, 1, 72)).notes
+    assert before.length_s == pytest.approx(2 * QUARTER_S)
     assert after.start_s - before.end_s == pytest.approx(0.4)
 
 
@@ -432,3 +432,23 @@ def test_a_score_of_too_many_moves_is_refused(monkeypatch):
     notes = [note(10 * n, 10, 67, contour=((0.0, 0.0), (1.0, 12.0))) for n in range(3)]
     with pytest.raises(ScoreError, match="more than 1000 moves"):
         play(*notes, tempi=(Tempo(Fraction(0), 5.0),))
+
+
+def test_at_one_time_notes_end_then_settings_change_then_notes_begin():
+    """In all parts; what changes with a note has its beat, and what ends with one that beat."""
+    slide = (span("portamento", 1, 2),)
+    parts = tuple(Part("", tuple(four(2, "up-bow")), slide) for _ in range(2))
+    events = [
+        event
+        for event in performed(Written(parts, STEADY)).events
+        if event.message.type != "control_change"
+    ]
+    kinds = [("note_off", "setting", "note_on").index(each.message.type) for each in events]
+    places = [(each.time_s, kind) for each, kind in zip(events, kinds, strict=True)]
+    assert places == sorted(places)
+    struck = [event.beat for event in events if event.message.type == "note_on"]
+    assert struck[:4] == [0.0, 0.0, 1.0, 1.0]
+    moved = [event.beat for event in events if isinstance(event.message, Setting)]
+    assert {*moved} == {2.0, 3.0}
+    (off,) = (e for e in play(note(1, 1, 69, "staccato")).events if e.message.type == "note_off")
+    assert (off.time_s, off.beat) == (0.75, 1.5)  # where it is let go

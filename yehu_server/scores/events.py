@@ -11,7 +11,6 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from itertools import repeat
 from typing import Any, ClassVar, NamedTuple, overload
 
 import mido
@@ -68,8 +67,8 @@ def code_of(message: Any) -> int | None:
     """A channel message as a number, status and data bytes; None for other messages."""
     if message.type not in CHANNEL_MESSAGES:
         return None
-    status, first, *second = message.bytes()
-    return status << 16 | first << 8 | (second[0] if second else 0)
+    data: list[int] = [*message.bytes(), 0]
+    return data[0] << 16 | data[1] << 8 | data[2]
 
 
 @contextlib.contextmanager
@@ -215,10 +214,13 @@ class Events(Sequence[ScoreEvent]):
         places = np.array([place for place, _ in before], np.int64)
         added = Events.of(event for _, event in before)
         code = np.where(added.code < 0, added.code - len(self.others), added.code)
-        own = self.time_s, self.beat, self.track, self.code
-        more = added.time_s, added.beat, added.track, code
-        columns = (np.insert(*pair) for pair in zip(own, repeat(places), more, strict=False))
-        return Events(*columns, (*self.others, *added.others))
+        return Events(
+            np.insert(self.time_s, places, added.time_s),
+            np.insert(self.beat, places, added.beat),
+            np.insert(self.track, places, added.track),
+            np.insert(self.code, places, code),
+            (*self.others, *added.others),
+        )
 
     def __len__(self) -> int:
         return len(self.code)

@@ -35,29 +35,20 @@ class DirectionReader:
             self.sound(sound, now, with_dynamics=not has_dynamics)
         jumps = sound is not None and any(sound.get(name) for name in JUMPS)
         has_tempo = tempo is not None or direction.find("direction-type/metronome") is not None
-        for kind in direction.iterfind("direction-type"):
-            for child in kind:
-                self._type(
-                    child, at, has_tempo=has_tempo, has_sound_tempo=tempo is not None, jumps=jumps
-                )
-
-    def _type(
-        self, child: Element, at: Fraction, *, has_tempo: bool, has_sound_tempo: bool, jumps: bool
-    ) -> None:
-        tag = child.tag
-        if tag == "dynamics":
-            self.dynamics(child, at)
-        elif tag == "wedge":
-            self._add(at, "wedge", child.get("type", ""), None, child.get("number", "1")[:8])
-        elif tag == "dashes":
-            self._add(at, "dashes", child.get("type", ""))
-        elif tag == "metronome":
-            if not has_sound_tempo:
+        for child in direction.iterfind("direction-type/*"):
+            tag = child.tag
+            if tag == "dynamics":
+                self.dynamics(child, at)
+            elif tag == "wedge":
+                self._add(at, "wedge", child.get("type", ""), None, child.get("number", "1")[:8])
+            elif tag == "dashes":
+                self._add(at, "dashes", child.get("type", ""))
+            elif tag == "metronome" and tempo is None:
                 self._metronome(child, at)
-        elif tag == "words":
-            self._words(child.text or "", at, has_tempo=has_tempo, jumps=jumps)
-        elif tag in ("segno", "coda"):
-            self._jumps.add(tag)
+            elif tag == "words":
+                self._words(child.text or "", at, has_tempo=has_tempo, jumps=jumps)
+            elif tag in ("segno", "coda"):
+                self._jumps.add(tag)
 
     def _add(
         self, at: Fraction, kind: str, name: str = "", value: float | None = None, which: str = ""

@@ -1,13 +1,17 @@
 """The loudness of a written part: dynamics, hairpins and accents, as MIDI velocities."""
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
 from fractions import Fraction
 from itertools import repeat
 from operator import itemgetter
+from typing import Any
+
+import numpy as np
 
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Sign, Span
 from yehu_server.scores.written.tempo import WrittenClock
+
+Array = Any
 
 DEFAULT = float(DYNAMICS["mf"])
 # In steps of velocity, by ear.
@@ -18,6 +22,8 @@ REACH = Fraction(1)  # quarters after a hairpin, in which a dynamic is its aim
 SOFTEST, LOUDEST = 1.0, 127.0
 DB_PER_STEP = 18.0 / 126.0  # of velocity, over the whole range (core/player/velocity.py)
 MIN_SWELL = 1.0
+SWELL_S = 0.02  # between steps of a swell
+MAX_STEPS = 2000  # of a swell within a note
 CHANGE_S = 0.3  # in which a note that is held comes to a dynamic written within it; by ear
 LEVELS = {**DYNAMICS, **{name: DYNAMICS[then] for name, (_, then) in FORCED.items() if then}}
 
@@ -68,6 +74,8 @@ class Loudness:
                 aim = written if (written > level) == (aim > level) and written != level else aim
             self._add(max(float(change.end), beat), min(max(aim, SOFTEST), LOUDEST))
 
+        self._columns = np.array(self._beats), np.array(self._levels)
+
     def _reached(self, beat: Fraction) -> float:
         """The beat at which a sign is complete: at once, or soon where a note is held over it."""
         note = self._part.notes[max(bisect_right(self._part.begins_at, float(beat)) - 1, 0)]
@@ -98,6 +106,15 @@ class Loudness:
         end, aim = self._beats[after], self._levels[after]
         return level + (aim - level) * (beat - begin) / (end - begin)
 
+    def _levels_at(self, beats: Array) -> Array:
+        """Loudness at beats [shape=(beats,)], after what is written there."""
+        known, levels = self._columns
+        after = np.searchsorted(known, beats, side="right")
+        at, to = np.maximum(after - 1, 0), np.minimum(after, len(known) - 1)
+        length = np.where(at == to, 1.0, known[to] - known[at])
+        between = levels[at] + (levels[to] - levels[at]) * (beats - known[at]) / length
+        return np.where(after == 0, DEFAULT, between)
+
     def _range(self, note: Note) -> tuple[float, float]:
         """The least and the largest loudness while a note sounds."""
         if not self._beats:
@@ -117,12 +134,16 @@ class Loudness:
             loudest += sum(ACCENTS.get(name, 0.0) for name in note.names)
         return round(min(max(loudest, SOFTEST), LOUDEST))
 
-    def below_db(self, note: Note, beats: Sequence[float]) -> list[float]:
-        """Levels (dB, 0 or more) of a note below its loudest moment at some beats, or one 0."""
+    def swell(self, note: Note) -> tuple[Array, Array]:
+        """Beats of a note, and the dB that it is below its loudest there; one where it stays."""
+        begin, length = note.begins_at, float(note.length)
         least, largest = self._range(note)
         if largest - least < MIN_SWELL:
-            return [0.0]
-        return [max(largest - self.at(beat), 0.0) * DB_PER_STEP for beat in beats]
+            return np.array([begin]), np.zeros(1)
+        length_s = self._clock.seconds(note.ends_at) - self._clock.seconds(begin)
+        count = min(max(int(length_s / SWELL_S), 2), MAX_STEPS)
+        beats = begin + length * np.arange(count) / count
+        return beats, np.maximum(largest - self._levels_at(beats), 0.0) * DB_PER_STEP
 
 
 def _level_of(sign: Sign) -> float:

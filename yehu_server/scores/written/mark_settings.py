@@ -49,12 +49,12 @@ GESTURES: Mapping[str, tuple[str, float]] = {
     "spiccato": ("spiccato", 0.0),
     "soft-accent": ("swell", 0.5),
 }
+ASKING = {"articulation", *SLIDES, *GESTURES}
 FORCED_GESTURE = "sforzando", 0.4
 PLUCKED = {"pizzicato", "snap-pizzicato"}
-# Marks that may set parameters.
-SETTING = {
-    *CRISP, *SLIDES, *GESTURES, *PLUCKED, "articulation", "up-bow", "down-bow", "inner-string",
-    "outer-string", "open-string", "finger", "tremolo", "vibrato", "harmonic",
+# Marks that set no parameter: notes that have no others are many.
+SET_NOTHING = {
+    "trill", "mordent", "inverted-mordent", "turn", "inverted-turn", "accent", "tenuto", "fermata",
 }  # fmt: skip
 
 
@@ -154,9 +154,10 @@ def is_plucked(note: Note, active: Active) -> bool:
 
 def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = YEHU) -> Values:
     """Return the parameters that a note's marks and the signs before it set, by address."""
-    if active is PLAIN and SETTING.isdisjoint(note.names):
+    if active is PLAIN and note.names <= SET_NOTHING:
         return {}
-    values, number = _held(active), articulation_of(note, active, quarter_s)
+    values = {} if active is PLAIN else _held(active)
+    number = articulation_of(note, active, quarter_s)
     if not (note.marks or values or active.plucked or number):
         return values
     if number:
@@ -201,7 +202,7 @@ def _held(active: Active) -> Values:
 
 def articulation_of(note: Note, active: Active, quarter_s: float) -> float:
     """The articulation that is written for a note, by its number; 0 for none."""
-    if not note.marks and not active.is_forced:
+    if not active.is_forced and note.names.isdisjoint(ASKING):
         return active.gesture or active.articulation
     length_s = float(note.length) * quarter_s
     mark = note.marked("articulation")

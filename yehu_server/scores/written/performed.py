@@ -17,7 +17,7 @@ from yehu_server.scores.written.mark_settings import (
     ARTICULATION,
     DIRECTION,
     PLAIN,
-    SLIDES,
+    SET_NOTHING,
     Active,
     actives_of,
     harmonic_of,
@@ -32,8 +32,6 @@ from yehu_server.scores.written.tempo import WrittenClock
 CHANNELS = tuple(channel for channel in range(16) if channel != 9)
 EXPRESSION, LEGATO_PEDAL = 11, 68
 PORTAMENTO, PORTAMENTO_TIME = "/playing/portamento", "/playing/portamento_time"
-SWELL_S = 0.02  # between steps of a swell
-MAX_STEPS = 2000  # of a swell within a note
 AFTER_S = 0.005  # after a note's beginning, when its finger is on the way
 LAST_S = 0.3  # after the last note, when all is put back
 HIGHEST_KEY = 127
@@ -42,7 +40,6 @@ MAX_EVENTS = 300_000
 SAME_S = 1e-9
 # Order at one time.
 OFF, SET, ON, AFTER = range(4)
-NOT_PLAYED = {"harmonic", "open-string", "arpeggio", *SLIDES}  # marks, or not always
 
 Beats = tuple[float, float]  # at which a note begins and ends
 
@@ -177,7 +174,7 @@ class _Performer:
         if is_plain and active is PLAIN and key == note.pitch and not self._is_shaped():
             self._touch(begin_s, played.end_s, key, self._loudness.velocity(note), beats)
             return
-        if not NOT_PLAYED.isdisjoint(note.names):
+        if not note.names <= SET_NOTHING:
             self._count_left(note, active)
         values = values_of(note, active, self._clock.quarter_s(beats[0]), self._within)
         if played.direction:
@@ -229,18 +226,16 @@ class _Performer:
 
     def _swell(self, played: Played) -> None:
         """Controller 11 as a hairpin has it, below the loudest moment of the note."""
-        note = played.note
-        begin, length = note.begins_at, float(note.length)
-        length_s = self._clock.seconds(note.ends_at) - self._clock.seconds(note.begins_at)
-        count = min(max(int(length_s / SWELL_S), 2), MAX_STEPS)
-        beats = [begin + length * step / count for step in range(count)]
-        for step, below_db in enumerate(self._loudness.below_db(note, beats)):
-            time_s = self._clock.seconds(beats[step]) if step else played.begin_s
+        beats, below_db = self._loudness.swell(played.note)
+        times_s = self._clock.seconds_of(beats)
+        times_s[0] = played.begin_s
+        rows = zip(times_s.tolist(), beats.tolist(), below_db.tolist(), strict=True)
+        for step, (time_s, beat, below) in enumerate(rows):
             # The amplitude is the square of expression.
-            value = round(127.0 * 10.0 ** (-below_db / 40.0))
+            value = round(127.0 * 10.0 ** (-below / 40.0))
             if value != self._expression and (step == 0 or played.begin_s < time_s < played.end_s):
                 self._expression = value
-                self._control(time_s, beats[step], EXPRESSION, value)
+                self._control(time_s, beat, EXPRESSION, value)
 
     # -- settings ----------------------------------------------------------------------------
 

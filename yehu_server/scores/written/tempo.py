@@ -26,10 +26,10 @@ SHORTEST_STEP = Fraction(1, 4)
 
 @dataclass(frozen=True)
 class Stretch:
-    """Beats that take `factor` times as long, and `more_s` on top."""
+    """Beats that take `factor` times as long, and `more_s` a quarter on top."""
 
-    begin: Fraction
-    end: Fraction
+    begin: float
+    end: float
     factor: float = 1.0
     more_s: float = 0.0
 
@@ -40,10 +40,9 @@ class WrittenClock:
     def __init__(self, written: Written) -> None:
         stretches = list(_stretches(written))
         tempi = _with_changes(written)
-        beats = {tempo.beat for tempo in tempi} | {Fraction(0)}
-        beats |= {beat for each in stretches for beat in (each.begin, each.end)}
-        self._beats = sorted({float(beat) for beat in beats if beat >= 0})
         starts = [float(tempo.beat) for tempo in tempi]
+        beats = {0.0, *starts, *(beat for each in stretches for beat in (each.begin, each.end))}
+        self._beats = sorted(beat for beat in beats if beat >= 0.0)
         rates = []  # seconds a quarter
         for beat in self._beats:
             at = bisect_right(starts, beat) - 1
@@ -53,16 +52,16 @@ class WrittenClock:
         self._seconds = [0.0]
         for (beat, after), rate in zip(pairwise(self._beats), self._rates, strict=False):
             self._seconds.append(self._seconds[-1] + (after - beat) * rate)
+        self._columns = tuple(map(np.array, (self._beats, self._seconds, self._rates)))
 
     def _stretched(self, rates: list[float], stretches: list[Stretch]) -> list[float]:
         changed = list(rates)
         for each in stretches:
-            first = bisect_right(self._beats, float(each.begin)) - 1
-            last = bisect_right(self._beats, float(each.end)) - 1
+            first = bisect_right(self._beats, each.begin) - 1
+            last = bisect_right(self._beats, each.end) - 1
             for at in range(first, last):
-                more = each.more_s / float(each.end - each.begin)
                 # Where several parts have the same fermata, it counts once.
-                changed[at] = max(changed[at], rates[at] * each.factor + more)
+                changed[at] = max(changed[at], rates[at] * each.factor + each.more_s)
         return changed
 
     def seconds(self, beat: Fraction | float) -> float:
@@ -73,13 +72,13 @@ class WrittenClock:
 
     def seconds_of(self, beats: Array) -> Array:
         """Seconds at beats [shape=(beats,)]."""
-        since, seconds, rates = map(np.array, (self._beats, self._seconds, self._rates))
+        since, seconds, rates = self._columns
         at = np.maximum(np.searchsorted(since, beats, side="right") - 1, 0)
         return seconds[at] + (beats - since[at]) * rates[at]
 
     def beats_at(self, seconds: Array) -> Array:
         """The beats at seconds [shape=(seconds,)]."""
-        since, beats, rates = map(np.array, (self._seconds, self._beats, self._rates))
+        beats, since, rates = self._columns
         at = np.maximum(np.searchsorted(since, seconds, side="right") - 1, 0)
         return beats[at] + (seconds - since[at]) / rates[at]
 
@@ -109,13 +108,16 @@ def _stretches(written: Written) -> Iterator[Stretch]:
             fermata, caesura = note.marked("fermata"), note.marked("caesura")
             if fermata or caesura:
                 factor = 1.0 if fermata is None else _held(fermata.value)
-                more_s = 0.0 if caesura is None else CAESURA_S
-                yield Stretch(note.held_from, note.end, factor, more_s)
+                begin = note.held_from
+                more_s = 0.0 if caesura is None else CAESURA_S / float(note.end - begin)
+                yield Stretch(float(begin), note.ends_at, factor, more_s)
         for sign in part.signs:
             if sign.name == "fermata":
-                yield Stretch(sign.beat, sign.beat + WAIT, _held(sign.value))
+                yield Stretch(float(sign.beat), float(sign.beat + WAIT), _held(sign.value))
             elif sign.name == "caesura" and sign.beat > 0:
-                yield Stretch(max(sign.beat - BRIEF, Fraction(0)), sign.beat, 1.0, CAESURA_S)
+                begin = max(sign.beat - BRIEF, Fraction(0))
+                more_s = CAESURA_S / float(sign.beat - begin)
+                yield Stretch(float(begin), float(sign.beat), 1.0, more_s)
 
 
 def _held(factor: float | None) -> float:

@@ -4,8 +4,9 @@
 /** @typedef {import('./midi_learn.js').MidiLearn} MidiLearn */
 
 const ALL = "";
+const NOTE_ON = 0x90;
 
-/** Event: 'change' of the inputs there are. */
+/** Events: 'change' of the inputs there are, and 'play' of a note. */
 export class Midi extends EventTarget {
   /** Inputs by their order of coming: each has 16 channels of its own. @type {string[]} */
   #ports = [];
@@ -79,6 +80,7 @@ export class Midi extends EventTarget {
       if (!data || !this.#isHeard(input.id)) return;
       this.taught.hear(data, port);
       this.instrument.player.midi(data, null, port);
+      if ((data[0] & 0xf0) === NOTE_ON && data[2] > 0) this.dispatchEvent(new Event("play"));
     };
   }
 

@@ -8,7 +8,8 @@
  *     FRAME off ID CHANNEL KEY               FRAME choke ID CHANNEL KEY
  *     FRAME express KIND ID VALUE            FRAME set NUMBER VALUE
  *     FRAME modulate NUMBER VALUE            FRAME foreign NUMBER VALUE (set, of an unknown space)
- *     FRAME time 0|1 (inside a block)        FRAME play 0|1 (from a block on; -1: counts in)
+ *     FRAME time 0|1 (inside a block)        FRAME play 0|1 [TEMPO] (from a block on; -1: counts in;
+ *                                            with a tempo from the beginning of a loop)
  *     FRAME reset      FRAME save FILE      FRAME load FILE      FRAME rate HZ (0: as it is)
  *     FRAME flush NUMBER VALUE               FRAME idle NUMBER VALUE (flush, while it is not active)
  *
@@ -249,9 +250,12 @@ int main(int words, char **word) {
         now = block > 0 ? block : 1 + (changing >> 16 & (MAX_CHANGING - 1));
         now = now < frames - done ? now : frames - done;
         for (; last < count && lines[last].frame <= done && !is_event(lines[last].word); last++) {
+            const double tempo = lines[last].number[1];
             if (!strcmp(lines[last].word, "play"))
                 transport.flags = (lines[last].number[0] != 0.0 ? CLAP_TRANSPORT_IS_PLAYING : 0u) |
-                                  CLAP_TRANSPORT_HAS_SECONDS_TIMELINE,
+                                  CLAP_TRANSPORT_HAS_SECONDS_TIMELINE |
+                                  (tempo > 0.0 ? CLAP_TRANSPORT_HAS_TEMPO | CLAP_TRANSPORT_IS_LOOP_ACTIVE : 0u),
+                transport.tempo = tempo, transport.loop_end_seconds = CLAP_SECTIME_FACTOR,
                 transport.song_pos_seconds = lines[last].number[0] < 0.0 ? -CLAP_SECTIME_FACTOR : 0;
             else between(plugin, &lines[last], &rate);
         }

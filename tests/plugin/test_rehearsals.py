@@ -54,6 +54,13 @@ def test_every_parameter_moves_at_its_frame(play, shown):
         assert np.array_equal(samples, wanted), block
 
 
+def test_loops_and_tempi_change_no_sample(play):
+    begins = ["0 play 1", *script(PHRASE)]
+    wanted, _ = play(begins, 90000)
+    jumps = [f"{frame} play 1 {tempo}" for frame, tempo in ((9000, 60), (33000, 240), (61000, 9.5))]
+    assert np.array_equal(play(in_order(begins, jumps), 90000)[0], wanted)
+
+
 def test_another_rate_and_a_reset_keep_what_was_set(play, shown):
     gain, preset = shown["/output/gain"], shown["/preset"]
     choice = preset.choices.index("ordinary")

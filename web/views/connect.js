@@ -102,8 +102,8 @@ function inputs({ midi }) {
     if (!midi.isAble) return translate(midi.whyNot);
     if (midi.isRefused) return translate("connect.refused");
     if (!midi.isOpen) return translate("connect.about");
-    const count = midi.inputs.length;
-    return translate(count ? "connect.count" : "connect.waiting", { count });
+    const names = midi.inputs.map(({ name, id }) => name ?? id).join(", ");
+    return translate(names ? "connect.names" : "connect.waiting", { names });
   };
   const update = () => {
     select.replaceChildren(

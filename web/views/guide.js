@@ -22,7 +22,7 @@ const FIRST_NOTE = 69; // that a ring invites to
  * @param {import('./tunes.js').Lesson} lesson
  * @param {Promise<void>} heard what the page's address brought, which comes first
  */
-export function showGuide({ instrument, hands, bow, keys, yehu }, lesson, heard) {
+export function showGuide({ instrument, hands, bow, keys, midi, yehu }, lesson, heard) {
   const stage = find("stage", HTMLElement);
   const guide = find("guide", HTMLElement);
   let at = -1; // before it, or after
@@ -129,6 +129,7 @@ export function showGuide({ instrument, hands, bow, keys, yehu }, lesson, heard)
     notice("begin");
   };
   hands.addEventListener("play", begin);
+  midi.addEventListener("play", begin);
   // The computer's keys are printed on the fingerboard, once one is pressed.
   const print = () => {
     yehu.keys = new Map([...NOTES].map(([code, note]) => [note + keys.octave, signOf(code)]));

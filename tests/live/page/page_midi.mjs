@@ -29,7 +29,7 @@ export default async function (browser, url, { words: [, fifo] }) {
   const panel = page.locator("#panel-connect");
   const ask = panel.getByRole("button", { name: "Use MIDI keyboards" });
   const list = panel.getByRole("combobox", { name: "MIDI keyboard" });
-  const reads = (/** @type {string} */ text) => panel.getByText(text).waitFor();
+  const reads = (/** @type {string} */ text) => panel.getByText(text, { exact: true }).waitFor();
   const heard = [];
   /** What was played until a condition holds, or for a while. @param {(played: any[]) => unknown} isEnough */
   const played = async (isEnough) => {
@@ -46,15 +46,16 @@ export default async function (browser, url, { words: [, fifo] }) {
 
   await page.click("#tab-connect");
   await ask.click();
-  await reads("The browser did not allow it");
+  await panel.getByText("The browser did not allow it").waitFor();
   await browser.grantPermissions(["midi", "midi-sysex"]);
   await ask.click();
-  await reads("None is connected yet");
+  await reads("None is connected yet. Plug one in.");
   send("+", KEYS, Buffer.from("Keys"));
-  await reads("Connected: 1");
+  await reads("Connected: Keys");
   send("m", KEYS, [0xfe]); // active sensing, which is nothing to play
   send("m", KEYS, ON);
   found.begun = await played(begins);
+  found.isInvited = await page.isVisible("#invite");
   send("m", KEYS, OFF);
   found.ended = await played(ends);
 
@@ -63,9 +64,9 @@ export default async function (browser, url, { words: [, fifo] }) {
   await played(begins);
   send("-", KEYS);
   found.pulled = await played(ends);
-  await reads("None is connected yet");
+  await reads("None is connected yet. Plug one in.");
   send("+", KEYS, Buffer.from("Keys"));
-  await reads("Connected: 1");
+  await reads("Connected: Keys");
   send("m", KEYS, ON);
   found.again = await played(begins);
   send("m", KEYS, OFF);
@@ -73,7 +74,7 @@ export default async function (browser, url, { words: [, fifo] }) {
 
   // Of two only the one that was chosen is played, which ends what the other holds.
   send("+", PADS, Buffer.from("Pads"));
-  await reads("Connected: 2");
+  await reads("Connected: Keys, Pads");
   found.names = await list.locator("option").allTextContents();
   send("m", KEYS, ON);
   await played(begins);
@@ -88,7 +89,7 @@ export default async function (browser, url, { words: [, fifo] }) {
 
   // The one that was chosen goes: the other is heard again.
   send("-", PADS);
-  await reads("Connected: 1");
+  await reads("Connected: Keys");
   send("m", KEYS, ON);
   found.left = await played(begins);
   return { ...found, errors };

@@ -22,5 +22,6 @@ def test_keyboards_play_and_may_be_pulled_out_in_a_note(imitated, tmp_path):
     found = drive("page_midi.mjs", imitated, str(library), str(fifo))
     assert found["begun"] == found["again"] == found["left"] == ["BEGIN"]
     assert found["ended"] == found["pulled"] == found["chosen"] == ["END"]
+    assert not found["isInvited"]  # to touch a string: it plays
     assert found["names"] == ["All that are connected", "Keys", "Pads"]
     assert found["pitches"] == [72]

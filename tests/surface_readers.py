@@ -7,6 +7,7 @@ import py2tosc
 from boxes import Rect
 
 from yehu_server.params.spec import Curve
+from yehu_server.params.table import offered
 from yehu_server.surfaces import common_layout
 from yehu_server.surfaces.catalogue import SURFACES, bytes_of
 
@@ -58,7 +59,7 @@ def touchosc():
     document = py2tosc.loads(bytes_of(SURFACES[0], SERVER, 0))
     controls = []
     for fader in document.find_all(type="FADER"):
-        param = params()[fader.get("tag")]
+        param = offered(params()[fader.get("tag")])
         texts = [
             start(each, "text") for each in document.find(param.address).find_all(type="LABEL")
         ]

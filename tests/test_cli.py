@@ -509,4 +509,4 @@ def test_a_full_standard_output_is_reported_in_one_line(words):
         _, said = process.communicate(timeout=60)
     assert process.returncode == 2
     assert is_one_line(said)
-    assert "standard output: No space left on device" in said
+    assert "standard output: no space left on device" in said

@@ -113,7 +113,9 @@ def test_a_score_is_written_in_either_notation_and_says_what_is_left_out(
         assert notes[0]["marks"] == [["up-bow", None]]
         assert "exists; --overwrite replaces it" in refused("score", "write", tune, "-o", target)
     assert "out.jianpu: written, without pitches between semitones" in err
-    assert "ends in none of" in refused("score", "write", tune, "-o", tmp_path / "out.pdf")
+    assert refused("score", "write", tune, "-o", tmp_path / "out.pdf").endswith(".jianpu, .txt\n")
+    midi = refused("score", "write", tune, "-o", tmp_path / "out.mid")
+    assert "; for MIDI: score show --export-midi" in midi
     assert "overwrite an input" in refused("score", "write", tune, "-o", tune)
     words = ("score", "write", tune, "-o", tmp_path / "b.jianpu", "--part")
     assert "has no part Flute" in refused(*words, "Flute")

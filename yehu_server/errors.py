@@ -72,6 +72,7 @@ _OTHER_WORDS = {
     "--rate": "sample-rate samplerate sr",
     "--room": "reverb echo hall ambience",
     "--subtype": "bits bit-depth bitdepth",
+    "--transpose": "key keys pitch semitones shift",
     "--tuning": "scale scala temperament scl",
     "--osc": "port",
     "build": "plugin plug-in vst vst3 clap lv2",

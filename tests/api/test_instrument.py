@@ -176,10 +176,11 @@ def test_stereo_has_two_sides_and_a_room_and_one_channel_has_none():
 def test_what_is_wrong_is_reported_in_one_line(fiddle, refused):
     play, speed = fiddle.play, "/bow/speed"
     refused("F4 to F6", fiddle.note_on, "C3")
-    refused("'H4'", fiddle.note_on, "H4")
-    refused("None", fiddle.note_on, None)
-    refused("nan", fiddle.note_on, math.nan)
-    refused("velocity", fiddle.note_on, "A4", 200)
+    refused("note: expected a note such as 'A4' or 69, got 'H4'", fiddle.note_on, "H4")
+    refused("note: expected a note such as 'A4' or 69, got None", fiddle.note_on, None)
+    refused("note: nan is not finite", fiddle.note_on, math.nan)
+    refused("velocity: 200 is not within 0 to 127", fiddle.note_on, "A4", 200)
+    refused("velocity: 200 is not within 0 to 127", fiddle.note_on, "A4", np.int16(200))
     refused("F4 to F6", fiddle.slide, 30)
     refused("/bow/force", fiddle.set, "/bow/forse", 1.0)
     refused("0 to 5 N", fiddle.set, "/bow/force", 50.0)

@@ -138,7 +138,10 @@ def test_a_wrong_score_is_reported_in_one_line(refused):
         (None, "score"),
         ([], "no notes"),
         ([("A4", 0.0)], "note 0"),
-        ([("A4", 0.0, 0.5), ("X9", 0.5, 0.5)], "note 1: 'X9'"),
+        (
+            [("A4", 0.0, 0.5), ("X9", 0.5, 0.5)],
+            "note 1: pitch: expected a note such as",
+        ),
         ([("A4", -1.0, 0.5)], "start"),
         ([("A4", 0.0, 0.0)], "duration"),
         ([("A4", 0.0, 1e9)], "duration"),

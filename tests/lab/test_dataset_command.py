@@ -232,7 +232,7 @@ def test_a_wrong_call_gets_one_line_and_makes_nothing(refused, tmp_path, monkeyp
     (tmp_path / "file").touch()
     for words, wrong in (
         ("none.toml -o out", "none.toml: no such file"),
-        ("bad.toml -o out", "bad.toml: "),
+        ("bad.toml -o out", "bad.toml:1: not a description of a data set (expected a value"),
         ("d.toml -o full", "is not empty, and is not a data set"),
         ("d.toml -o file", "is a file; name a folder"),
         ("d.toml -o none/out", "does not exist"),

@@ -96,12 +96,15 @@ def test_a_wrong_call_is_reported_in_a_line_before_anything_runs(gesture, study,
     refined = tmp_path / "refined.toml"
     refined.write_text(STUDY + '[refine]\naxes = ["force"]\nlevels = 1\n')
     for words, wrong in (
-        ((gesture, "--vary", "bow_force=99"), "--vary: bow_force: 99.0 is not within"),
+        (
+            (gesture, "--vary", "bow_force=99"),
+            "--vary: gesture.controls.bow_force: 99.0 is not",
+        ),
         ((gesture, "--vary", "bow_farce=1"), "yehu-server: --vary: bow_farce: unknown entry"),
         ((gesture, "--vary", "bow_force=1:2"), "--vary bow_force=1:2: expected numbers"),
         ((gesture,), "nothing is varied"),
         ((refined, "--signals", tmp_path / "runs"), "a study with [refine] keeps no signals"),
-        ((study, "--signals", study), "File exists"),
+        ((study, "--signals", study), "file exists"),
     ):
         assert wrong in refused("sweep", "-o", tmp_path / "found.npz", *words)
         assert not (tmp_path / "found.npz").exists()

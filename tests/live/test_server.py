@@ -104,7 +104,7 @@ def test_on_windows_no_port_of_another_program_is_taken(monkeypatch) -> None:
 
 def test_windows_says_of_an_address_in_use_what_others_say() -> None:
     theirs = "Only one usage of each socket address (protocol/network address/port) is permitted"
-    assert why_not(OSError(errno.EADDRINUSE, theirs)) == os.strerror(errno.EADDRINUSE)
+    assert why_not(OSError(errno.EADDRINUSE, theirs)) == os.strerror(errno.EADDRINUSE).lower()
 
 
 def test_a_running_server_is_named(live) -> None:

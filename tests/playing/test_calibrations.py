@@ -94,7 +94,7 @@ def test_on_a_full_disk_it_is_measured_and_reported_in_one_line(kept, caplog, mo
     monkeypatch.setattr(checksummed.Path, "write_bytes", full)
     assert kept.ask() == MEASURED
     (line,) = caplog.messages
-    assert "No space left on device" in line
+    assert "no space left on device" in line
 
 
 def spoiled(**changes):

@@ -119,7 +119,7 @@ def test_a_file_is_whole_when_writing_fails(presets, monkeypatch, of, failing):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(of, failing, fail)
-    with pytest.raises(OutputError, match="No space left"):
+    with pytest.raises(OutputError, match="no space left"):
         presets.save("mine", DEFAULTS | {"/playing/vibrato": 20.0})
     assert [file.name for file in presets.own.iterdir()] == ["mine.toml"]
     assert (presets.own / "mine.toml").read_bytes() == before

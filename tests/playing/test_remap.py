@@ -120,7 +120,7 @@ def test_a_wrong_file_is_refused_once_and_read_again_when_it_is_right(watch, pat
 def test_a_pipe_in_the_place_of_a_file_is_refused_and_not_waited_for(watch, path, below):
     path.unlink()
     os.mkfifo(path)
-    assert "Not a regular file" in refusal(watch)
+    assert "not a regular file" in refusal(watch)
     assert watch.poll() is None
     os.mkfifo(below)
     path.unlink()

@@ -35,12 +35,13 @@ def test_each_source_has_one_name():
     same = ("cc 0", "cc 119", "cc 0/32", "cc 31/63", "nrpn 0", "nrpn 16382", "note")
     same += ("/fader1", "/1/xy.2/a-b", "/yehus")
     other = {"nrpn 0/0": "nrpn 0", "nrpn 2/44": "nrpn 300", "nrpn 127/126": "nrpn 16382"}
+    other |= {"CC 1": "cc 1", "cc74": "cc 74", "CC1/33": "cc 1/33", "NRPN2/44": "nrpn 300"}
     names = {text: text for text in same} | other
     assert {text: canonical(text) for text in names} == names
 
 
 NO_SOURCES = [
-    *("cc", "CC 1", "cc 01", "cc \uff11", "cc 120", "cc 128", "cc 6", "cc 98", "cc  1"),
+    *("cc", "Cc 1", "cc 01", "cc \uff11", "cc 120", "cc 128", "cc 6", "cc 98", "cc  1"),
     *("cc 1/34", "cc 1/1", "cc 32/64", "cc 33/1", "cc 6/38", "cc 1/", "cc 1/033"),
     *("nrpn", "nrpn 16383", "nrpn 127/127", "nrpn 128/0", "nrpn 0/128", "nrpn 300/1", "nrpn 99999"),
     *("rpn 0", "note 3", "breath", ""),

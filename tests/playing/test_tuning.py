@@ -10,7 +10,7 @@ from yehu_server.cli.config import parse
 from yehu_server.cli.playing_options import playing_options_of
 from yehu_server.errors import ParameterError
 from yehu_server.playing.tuning import EQUAL, Tuning, read_tuning
-from yehu_server.scores.reading import ReadOptions
+from yehu_server.scores.reading import ReadOptions, read_any
 
 TWELVE = [f"{100 * step}.0" for step in range(1, 12)] + ["2/1"]
 MAJOR = ["9/8", "5/4", "4/3", "3/2", "5/3", "15/8", "2"]
@@ -237,10 +237,13 @@ def test_what_is_no_text_and_pitches_no_number_can_hold_are_refused(read):
 
 
 def test_a_transposed_tuning_and_what_scores_are_fitted_to():
-    words = ["render", "a.mid", "-o", "a.wav", "--transpose=-5"]
+    tune = Path(__file__).parents[2] / "examples" / "tunes" / "twinkle.jianpu"
+    words = ["render", str(tune), "-o", "a.wav", "--transpose=-5"]
     playing = playing_options_of(parse(words, cli._parser()))
     assert [playing.tuning.pitch(key, 440.0) for key in (70, 60.5)] == [65.0, 55.5]
     assert ReadOptions.by(playing, all_parts=False).within.ends == (70, 94)
+    score = read_any(tune, ReadOptions.by(playing, all_parts=False))
+    assert score.remarks == ("moved to fit F4 to F6: part 1 an octave up",)
     scale = playing_options_of(parse([*words, "--tuning=chaozhou-seven-equal"], cli._parser()))
     plain = read_tuning(Path("chaozhou-seven-equal"))
     assert scale.tuning.pitch(70, 440.0) == plain.pitch(70, 440.0) - 5.0

@@ -17,17 +17,11 @@ def controls_of(name):
     return READERS[name]().controls
 
 
-def range_on(name, address):
-    """What a surface offers of a parameter: TouchOSC all, as it sends 0 to 1."""
-    param = BY_ADDRESS[address]
-    return param if name == "yehu.tosc" else offered(param)
-
-
 def test_every_parameter_has_one_control_of_its_range_that_begins_at_its_default(name):
     controls = controls_of(name)
     assert sorted(control.address for control in controls) == sorted(BY_ADDRESS)
     for control in controls:
-        param = range_on(name, control.address)
+        param = offered(BY_ADDRESS[control.address])
         assert (control.lo, control.hi) == (param.lo, param.hi)
         assert control.start == pytest.approx(param.default)
 
@@ -37,7 +31,7 @@ def test_a_control_sends_at_its_address_and_has_its_name_and_range_beside_it(nam
         param = BY_ADDRESS[control.address]
         assert control.sends == f"/yehu{param.address}"
         assert common_layout.label(param) in control.texts
-        assert range_on(name, control.address).range_text in control.texts
+        assert offered(BY_ADDRESS[control.address]).range_text in control.texts
 
 
 def test_nothing_overlaps_and_all_lies_within_its_page(name, any_table):

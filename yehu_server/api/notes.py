@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable
+from numbers import Real
 from typing import Any, NamedTuple
 
 import mido
@@ -36,10 +37,11 @@ def pitch_of(note: str | float, what: str = "note") -> float:
     >>> pitch_of("A4"), pitch_of("Bb4-50"), pitch_of(60)
     (69.0, 69.5, 60.0)
     """
-    if isinstance(note, str):
-        found = _NAME.fullmatch(note.strip())
-        if found is None:
-            raise ParameterError(f"{what}: expected a name such as 'A4' or 'F#5', got {note!r}")
+    found = _NAME.fullmatch(note.strip()) if isinstance(note, str) else None
+    if found is None and (isinstance(note, bool) or not isinstance(note, Real)):
+        given = brief(note)
+        raise ParameterError(f"{what}: expected a note such as 'A4' or 69, got {given}")
+    if found is not None:
         letter, signs, octave, cents = found.groups()
         pitch = 12.0 * (int(octave) + 1) + SEMITONES[letter.upper()]
         pitch += sum(ACCIDENTALS[sign] for sign in signs) + 0.01 * float(cents or 0.0)

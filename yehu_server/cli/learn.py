@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from yehu_server.cli.arguments import add_command, add_options, add_server, server_of
@@ -24,6 +25,7 @@ from yehu_server.errors import ParameterError, YehuError
 from yehu_server.live.part_addresses import group_of
 from yehu_server.params.table import PREFIX, TABLE
 from yehu_server.system.terminals import complete_by
+from yehu_server.util.hints import shown_path
 
 if TYPE_CHECKING:
     from yehu_server.live.osc.command_client import OscClient
@@ -77,7 +79,7 @@ def _one(client: OscClient, address: str, arguments: argparse.Namespace) -> None
         for message in client.answers(LONGEST_S):
             if message.address == f"{own}/learned":
                 _, source, file, others, *lost = message.arguments
-                print_result(f"{source} added: {target}, saved in {file}")
+                print_result(f"{source} added: {target}, saved in {shown_path(Path(file))}")
                 if others:
                     print_result(f"  {others} still move{'s' * (', ' not in others)} it, too")
                 _print_binds(lost, "no longer, until --forget")

@@ -135,7 +135,9 @@ def _write(arguments: argparse.Namespace) -> int:
 
     output, ending = arguments.output, arguments.output.suffix.lower()
     if ending not in (*MUSICXML, *JIANPU):
-        raise OutputError(f"{output}: ends in none of {', '.join((*MUSICXML, *JIANPU))}")
+        midi = "; for MIDI: score show --export-midi" if output.suffix in (".mid", ".midi") else ""
+        known = ", ".join((*MUSICXML, *JIANPU))
+        raise OutputError(f"{output}: its ending is not one of {known}{midi}")
     check_distinct({"-o": output}, [arguments.score])
     written, left = read_as_written(arguments.score, arguments.song, arguments.tempo)
     with errors_name(arguments.score):

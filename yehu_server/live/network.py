@@ -20,7 +20,6 @@ HTTP_ADDRESS: Address = ("127.0.0.1", 9001)
 # A host's name, or its address in IPv4: labels of 1 to 63 characters, and a final full stop or not.
 _LABEL = r"[A-Za-z0-9_](?:[A-Za-z0-9_-]{0,61}[A-Za-z0-9_])?"
 _NAME = re.compile(rf"{_LABEL}(?:\.{_LABEL})*\.?")
-IN_USE = "Address already in use"  # Windows' text is a sentence on sockets
 ANYWHERE = "0.0.0.0"  # noqa: S104 - nothing is bound to it here
 
 
@@ -86,8 +85,6 @@ def listening(address: Address) -> socket.socket:
 
 def why_not(error: OSError) -> str:
     """The reason why an address cannot be bound; of one not this machine's, with those that are."""
-    if error.errno == errno.EADDRINUSE:
-        return IN_USE
     if error.errno != errno.EADDRNOTAVAIL:
         return error_reason(error)
     import ifaddr

@@ -95,7 +95,7 @@ def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int
     of_target = [own for own in contents.binds if own.target == address]
     kept = [one for own in contents.binds for one in own.replaces]
     given_up = [one for one in kept if one.target == address and one.is_learned]
-    dropped = [own for own in of_target if _is_learned(own)] or ([] if given_up else of_target)
+    dropped = [own for own in of_target if own.is_learned] or ([] if given_up else of_target)
     if not (dropped or given_up):
         return mapping, 0
     remaining = [own for own in contents.binds if own not in dropped]
@@ -111,7 +111,7 @@ def _unlearned(mapping: Mapping, address: str, path: Path) -> tuple[Mapping, int
             (
                 own
                 for own in binds
-                if _is_learned(own)
+                if own.is_learned
                 and _excludes(own, returned)
                 and (own not in back or _is_plain(own))
             ),
@@ -170,14 +170,9 @@ def _replacing(bind: Bind, dropped: Iterable[Bind]) -> Bind:
     return replace(bind, replaces=tuple(dict.fromkeys(kept)))
 
 
-def _is_learned(bind: Bind) -> bool:
-    """Whether `learn` made it, of before 1.0 too: that did not say so, and made all exclusive."""
-    return bind.is_learned or bind.is_exclusive
-
-
 def _is_plain(bind: Bind) -> bool:
     """Whether it is as `learn` makes it: its control can be moved again, nothing else is lost."""
-    return _is_learned(bind) and bind == replace(
+    return bind.is_learned and bind == replace(
         bind, curve=find(bind.target).curve, span=None, invert=False, smoothing_ms=0.0, channels=()
     )
 

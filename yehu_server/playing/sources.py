@@ -19,8 +19,8 @@ NO_NRPN = FINEST  # 127/127 means that none is selected
 MPE_FROM = 3  # channels with notes that seem to be MPE's, where no zone says so
 CHANNELS = 16  # in each port
 
-_CC = re.compile(r"cc (0|[1-9][0-9]{0,2})(?:/(0|[1-9][0-9]{0,2}))?")
-_NRPN = re.compile(r"nrpn (0|[1-9][0-9]{0,4})(?:/(0|[1-9][0-9]{0,2}))?")
+_CC = re.compile(r"(?:cc|CC) ?(0|[1-9][0-9]{0,2})(?:/(0|[1-9][0-9]{0,2}))?")
+_NRPN = re.compile(r"(?:nrpn|NRPN) ?(0|[1-9][0-9]{0,4})(?:/(0|[1-9][0-9]{0,2}))?")
 # An OSC address has no spaces, and none of the characters of patterns.
 _ADDRESS = re.compile(r"(?:/[!-.0-~]+)+")
 _NOT_IN_ADDRESSES = frozenset("#*,?[]{}")

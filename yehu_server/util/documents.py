@@ -107,7 +107,7 @@ class Document:
 
     def _not(self, error: ValueError) -> YehuError:
         line = f":{error.line}" if isinstance(error, ParsingError) else ""
-        reason = "no text in UTF-8" if isinstance(error, UnicodeDecodeError) else error
+        reason = "it is not text in UTF-8" if isinstance(error, UnicodeDecodeError) else error
         return self._unreadable(f"{self.name}{line}: not {self.what} ({reason})")
 
     def _line(self, key: KeyPath) -> int | None:

@@ -86,7 +86,11 @@ def read_text(path: Path, most_bytes: int = MAX_TEXT_BYTES) -> str:
     return read_bytes(path, most_bytes).decode("utf-8")
 
 
-_REASONS = {errno.ENOENT: "no such file", errno.EISDIR: "is a folder"}  # not the system's words
+_REASONS = {  # not in the words of systems, which differ
+    errno.ENOENT: "no such file",
+    errno.EISDIR: "is a folder",
+    errno.EADDRINUSE: "address already in use",
+}
 
 
 def error_reason(error: BaseException) -> str:
@@ -94,7 +98,7 @@ def error_reason(error: BaseException) -> str:
     if isinstance(error, OSError) and error.strerror:
         # `socket.create_server` adds an address, which our message has already.
         reason = error.strerror.partition(" (while attempting to bind")[0]
-        return _REASONS.get(error.errno or 0, f"{reason[0].lower()}{reason[1:]}")
+        return _REASONS.get(error.errno or 0, f"{reason[:1].lower()}{reason[1:]}")
     return str(error) or type(error).__name__
 
 

@@ -71,8 +71,6 @@ def choices(value: Any, known: Collection[str]) -> list[str]:
 
 def _shown(value: Any) -> str:
     """A value as files write it, not as Python does."""
-    if value is None:
-        return "nothing"
     if isinstance(value, bool | date | time):
         return str(value).lower()
     if isinstance(value, list):

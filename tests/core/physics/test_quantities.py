@@ -63,7 +63,7 @@ def test_a_mistake_is_refused_by_name(subtests):
         ([["bow", {}]], "instrument: expected a table"),
         ({"bow": {"mu_S": "1.0"}}, "bow.mu_S: expected a number, got '1.0'"),
         ({"bow": {"mu_S": True}}, "bow.mu_S: expected a number, got true"),
-        ({"bow": {"mu_S": None}}, "bow.mu_S: expected a number, got nothing"),
+        ({"bow": {"mu_S": None}}, "bow.mu_S: expected a number, got None"),
         ({"bow": {"mu_S": [1.0]}}, "bow.mu_S: expected a number"),
         ({"bow": {"base": "yehu.toml"}}, "bow.base: unknown entry"),
         ({"bow": {"points": 2.5}}, "bow.points: expected a whole number from 2 to 4, got 2.5"),

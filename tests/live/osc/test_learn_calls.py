@@ -227,7 +227,6 @@ def test_what_another_server_has_learned_is_kept_and_used_with_the_next_that_is_
     still.ask("/learn", "/playing/press")
     assert not still.player.mapping.of("cc 21")
     turn(still, 22, 0, 127)
-    still.settle()
     assert [len(still.player.mapping.of(f"cc {number}")) for number in (20, 21, 22)] == [1, 1, 1]
     *_, learned, others = still.services.said
     assert learned.startswith("cc 22 added: /playing/press")

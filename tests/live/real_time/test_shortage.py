@@ -59,14 +59,14 @@ def test_helpers_that_end_while_there_are_no_files_come_back_when_there_are(jack
     allowed = allow_files(pid, 3)
     for name in ("audio.stream", "midi.input_process"):
         os.kill(before[name], signal.SIGKILL)
-    server.said("no sound: the audio process cannot be started: Too many open files", 10.0, said)
-    server.said("MIDI inputs: Too many open files; trying again", 10.0, said)
+    server.said("no sound: the audio process cannot be started: too many open files", 10.0, said)
+    server.said("MIDI inputs: too many open files; trying again", 10.0, said)
     time.sleep(2.0)  # time for some more tries
     for about in ("audio process", "MIDI inputs"):
         assert len([line for line in server.lines[said:] if about in line]) == 1
     frame = osc.status()["frame"]
     until(lambda: osc.status()["frame"] > frame + 4800, "time to go on", 5.0)
-    assert "Too many open files" in osc.status()["problem"]
+    assert "too many open files" in osc.status()["problem"]
 
     allow_files(pid, allowed)
     server.said(f"playing on {DEVICE}", 15.0, said)

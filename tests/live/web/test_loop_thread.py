@@ -53,7 +53,7 @@ def test_a_loop_that_is_short_of_files_says_so_once_in_a_line(until, caplog):
         thread.start()
         until(lambda: done, "its errors")
         thread.stop()
-    assert caplog.messages == [f"OSCQuery: {os.strerror(errno.EMFILE)}; trying again"]
+    assert caplog.messages == [f"OSCQuery: {os.strerror(errno.EMFILE).lower()}; trying again"]
 
 
 def test_oscquery_answers_again_after_its_server_failed(make_live, until, monkeypatch):

@@ -74,6 +74,9 @@ class CallContext:
 
     def send_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         """Send a peer the reason why its message to an address was refused; count and log it."""
+        if isinstance(reason, str) and ": " in reason:  # it may name the parameter once more
+            named, _, rest = reason.partition(": ")
+            reason = rest if named[:1] == "/" and address.endswith(named) else reason
         self.counts.errors += 1
         self.report_error(peer, address, reason)
 

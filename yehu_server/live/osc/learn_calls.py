@@ -16,6 +16,7 @@ from yehu_server.playing.learner import LearnedSource
 from yehu_server.playing.mapping import Mapping
 from yehu_server.playing.mapping_file import settable_param
 from yehu_server.playing.sources import is_address
+from yehu_server.util.hints import shown_path
 
 PATIENCE_S = 60.0  # to wait for something to be moved
 NOT_MOVED = -1.0
@@ -62,7 +63,7 @@ class LearnCalls(GroupCalls):
 
         def take() -> None:
             self._take(mapping)
-            self._context.log(f"{learn.added(before, mapping, target, found)} ({path})")
+            self._context.log(f"{learn.added(before, mapping, target, found)} ({shown_path(path)})")
             if is_new:
                 self._context.log("what others changed in this file is used from now on, too")
             self._send(peer, "/learned", self._prefix + target, str(found), str(path), kept, *lost)

@@ -33,7 +33,7 @@ def acts(group: str, context: CallContext) -> dict[str, Act]:
     part = PartCalls(group, context)
     found: dict[str, Act] = {}
     for param in part.params:
-        found[param.address] = partial(part.set, address=param.address)
+        found[param.address] = partial(part.set, param=param)
         found[param.address + UNIT] = partial(part.set_unit, param=param)
     for kind, row in _ROWS:
         if not (group and row.is_for_all):

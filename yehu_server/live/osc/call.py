@@ -52,8 +52,15 @@ class Request:
             wanted = f"{least}" if least == most else f"{least} to {most}"
             plural = "" if wanted == "1" else "s"
             raise CountError(f"expected {wanted} argument{plural}, got {count}")
-        given = self.arguments[after:] if after else self.arguments
-        return [_number(one, place, switches) for place, one in enumerate(given, after)]
+        numbers = []
+        for place, one in enumerate(self.arguments[after:], after):
+            is_switch = isinstance(one, bool)
+            if not isinstance(one, float | int) or (is_switch and not switches):
+                raise KindError(place, _kind(one))
+            if not math.isfinite(one):
+                raise RefusedError(f"{one} is not finite")
+            numbers.append(float(one))
+        return numbers
 
     @property
     def is_let_go(self) -> bool:
@@ -74,15 +81,6 @@ class Request:
         word = replace(self, arguments=self.arguments[:1]).word()
         given = self.numbers(0, most, after=1, switches=True)
         return [word, *(number != 0.0 for number in given), *[False] * (most - len(given))]
-
-
-def _number(argument: Any, place: int, switches: bool) -> float:
-    """A number from a float, an int, or a switch; raises KindError, or RefusedError."""
-    if isinstance(argument, float | int) and (switches or not isinstance(argument, bool)):
-        if math.isfinite(argument):
-            return float(argument)
-        raise RefusedError(f"{argument} is not finite")
-    raise KindError(place, _kind(argument))
 
 
 def _kind(argument: Any) -> str:

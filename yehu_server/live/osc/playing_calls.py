@@ -45,9 +45,9 @@ class PartCalls(GroupCalls):
 
     # -- parameters --------------------------------------------------------------------------
 
-    def set(self, call: Request, address: str) -> None:
+    def set(self, call: Request, param: Param) -> None:
         """Set a parameter."""
-        param = find(address)
+        address = param.address
         if len(call.arguments) == 1 and isinstance(call.arguments[0], str) and address in NAMES:
             value = named(param, call.arguments[0])
         else:
@@ -55,7 +55,7 @@ class PartCalls(GroupCalls):
         if param.is_choice:  # to what plays: faders of surfaces pass through fractions
             value = there_is(param, float(math.floor(value + TURNED_ON)))
         self._set(call, address, value)
-        self._echo(call.peer, [address])
+        self._clients.echo(call.peer, [self._group + address])
 
     def _set(self, call: Request, address: str, value: float) -> None:
         accepted = self._player.set(address, value, frame=call.frame)
@@ -66,7 +66,7 @@ class PartCalls(GroupCalls):
         """Set a parameter by 0 to 1 of its range."""
         (unit,) = call.numbers(1, switches=True)
         self._set(call, param.address, param.from_unit(unit))
-        self._echo(call.peer, [param.address + UNIT])
+        self._clients.echo(call.peer, [self._group + param.address + UNIT])
 
     def move(self, call: Request, bind: Bind) -> None:
         """Move what the mapping binds to an address of the user's own."""
@@ -145,11 +145,11 @@ class PartCalls(GroupCalls):
 
     @plays("/bend", "Slides the finger away from the note.", like("/playing/bend", "semitones"))
     def _bend(self, call: Request) -> None:
-        self.set(call, "/playing/bend")
+        self.set(call, find("/playing/bend"))
 
     @plays("/press", "How hard the finger presses the string.", like("/playing/press", "newtons"))
     def _press(self, call: Request) -> None:
-        self.set(call, "/playing/press")
+        self.set(call, find("/playing/press"))
 
     @plays("/articulation", "Chooses what both hands do in the next notes.", ARTICULATION)
     def _articulation(self, call: Request) -> None:

@@ -46,7 +46,8 @@ def acts(group: str, context: CallContext) -> dict[str, Act]:
 def _carry_out(row: Call, carrier: GroupCalls, request: Request) -> None:
     """Carry out a call; the error of wrong arguments names them."""
     try:
-        row.act(carrier, request)
+        if not (row.is_momentary and request.is_let_go):
+            row.act(carrier, request)
     except CountError as error:
         names = " ".join(argument.name.upper() for argument in row.arguments)
         raise RefusedError(f"{error} ({names})" if names else str(error)) from None

@@ -64,7 +64,7 @@ class Request:
 
     @property
     def is_let_go(self) -> bool:
-        """Whether it is what a momentary button sends as it is let go: 0 or F; see `numbers`."""
+        """Whether it has what a momentary button sends as it is let go: 0 or F; see `numbers`."""
         return self.numbers(0, 1, switches=True) == [0.0]
 
     def word(self) -> str:
@@ -123,6 +123,7 @@ class Call:
     # Carries it out for a group of addresses; raises YehuError where it refuses.
     act: Callable[[Any, Request], None]
     is_for_all: bool = False  # whether no part has one of its own
+    is_momentary: bool = False  # whether a button may send it, and then 0 or F as it is let go
     takes_patterns: bool = False  # whether a pattern reaches it: what plays, and loses nothing
     reads_files: bool = False  # whether it waits for files that are being written
 

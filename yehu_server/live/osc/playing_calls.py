@@ -164,27 +164,24 @@ class PartCalls(GroupCalls):
     @plays(
         "/release",
         "Gives the bow and fingers that you moved directly back to the player (no time).",
+        is_momentary=True,
     )
     def _release(self, call: Request) -> None:
-        if call.is_let_go:
-            return
         self._player.lift(frame=call.frame)  # of a bow that no note draws
         self._player.release(frame=call.frame)
 
     @osc_call(
-        "/panic", "Ends all notes and all sound, and drops messages that wait for their time."
+        "/panic",
+        "Ends all notes and all sound, and drops messages that wait for their time.",
+        is_momentary=True,
     )
     def _panic(self, call: Request) -> None:
-        if call.is_let_go:
-            return
         self._context.schedule.drop_part(self._group)
         for player in self._players:
             player.panic(frame=call.frame)
 
-    @osc_call("/reset", "The same, and sets every parameter to its default.")
+    @osc_call("/reset", "The same, and sets every parameter to its default.", is_momentary=True)
     def _reset(self, call: Request) -> None:
-        if call.is_let_go:
-            return
         self._context.schedule.drop_part(self._group)
         for player in self._players:
             player.reset(frame=call.frame)

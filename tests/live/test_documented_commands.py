@@ -198,10 +198,3 @@ def test_each_line_of_a_page_can_be_given_in_order(of, desk, make_live, subtests
                 assert serve(words[2:]) == 0
             else:
                 assert main(words[1:]) == 0
-
-
-def test_no_reason_outlives_its_lines():
-    lines = [line for page in PAGES for line in lines_of(page)]
-    stale = [each for each in NOT_GIVEN if not any(re.match(each, line) for line in lines)]
-    assert stale == []
-    assert len(lines) > 100

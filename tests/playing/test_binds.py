@@ -1,5 +1,6 @@
 """From source to target and back: spans, curves, tables, inversion."""
 
+import numpy as np
 import pytest
 from curves import from_unit, input_to_unit, picks_up, receives, to_unit
 from hypothesis import given
@@ -28,12 +29,11 @@ curves = st.one_of(st.sampled_from(Curve), tables(rising=True))
 
 @given(tables(), units)
 def test_a_table_goes_through_its_points_and_is_straight_between_them(table, unit):
-    for (x0, y0), (x1, y1) in zip(table.points, table.points[1:], strict=False):
-        assert table.fraction_at(x0) == pytest.approx(y0, abs=1e-9)
-        assert table.fraction_at(x1) == pytest.approx(y1, abs=1e-9)
-        if x0 <= unit <= x1:
-            expected = (y0 * (x1 - unit) + y1 * (unit - x0)) / (x1 - x0)
-            assert table.fraction_at(unit) == pytest.approx(expected, abs=1e-9)
+    bind = Bind("cc 7", "/playing/volume", (0.0, 1.0), table)
+    for place in (unit, *(x for x, _ in table.points)):
+        expected = np.interp(place, *zip(*table.points, strict=True))
+        assert bind.from_unit(place) == from_unit(bind, place)
+        assert from_unit(bind, place) == pytest.approx(expected, abs=1e-9)
 
 
 @given(spans, curves, st.booleans(), units)

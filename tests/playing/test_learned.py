@@ -10,7 +10,7 @@ from curves import from_unit
 from yehu_server.cli import main
 from yehu_server.errors import MappingError, OutputError
 from yehu_server.params.table import TABLE
-from yehu_server.playing.learn import added, changes, learn, others, unlearn
+from yehu_server.playing.learn import changes, learn, others, unlearn
 from yehu_server.playing.learner import LearnedSource
 from yehu_server.playing.mapping import Mapping, load, shipped_mappings
 
@@ -92,19 +92,6 @@ def test_others_are_taken_away_only_if_asked_and_come_back():
     assert movers(mapping, "/playing/vibrato") == ["cc 21"]
     mapping, _ = unlearn(mapping, "/playing/vibrato")
     assert movers(mapping, "/playing/vibrato") == before
-
-
-def test_what_was_added_what_stays_and_what_is_gone_is_said():
-    before = load("keyboard-vibrato-wheel")
-    for source, only, said in [
-        ("cc 21", False, "cc 21 added: /playing/vibrato; cc 77, cc 1 still move it, too"),
-        ("cc 77", True, "cc 77 added: /playing/vibrato; cc 1 no longer moves /playing/vibrato"),
-    ]:
-        mapping, path = learn(
-            before, "/playing/vibrato", LearnedSource(source), soft=False, only=only
-        )
-        assert added(before, mapping, "/playing/vibrato", LearnedSource(source)) == said
-        path.unlink()
 
 
 def test_a_file_of_ones_own_keeps_its_comments_and_order(tmp_path):

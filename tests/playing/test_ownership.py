@@ -111,16 +111,3 @@ def test_what_is_no_finite_number_or_unknown_is_refused_and_changes_nothing(play
 def test_a_value_out_of_range_is_clamped_and_returned(player, listener):
     assert player.write("/bow/speed", 99.0) == listener["/bow/speed"] == 2.0
     assert player.write("/playing/speed", 99.0) == player.value("/playing/speed") == 0.6
-
-
-def test_bow_and_fingers_are_sent_where_a_write_or_a_note_moved_them_last(player):
-    assert player.value("/bow/speed") == 0.0
-    player.note_on(key(75))
-    assert player.value("/bow/speed") == 0.2
-    player.write("/bow/speed", 0.11)
-    assert player.value("/bow/speed") == 0.11
-    player.note_on(key(77))
-    assert player.value("/bow/speed") == 0.2
-    player.note_off(key(77))
-    player.note_off(key(75))
-    assert player.value("/bow/speed") == 0.0

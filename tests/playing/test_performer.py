@@ -204,14 +204,6 @@ def test_a_lifted_bow_takes_its_time_for_a_gentle_note_and_bites_for_a_hard_one(
     assert took[1.0] < 0.75 * 80.0
 
 
-def test_speed_pressure_and_press_reach_the_sounding_note(player, listener):
-    player.note_on(key(74))
-    player.write("/playing/speed", 0.3)
-    player.write("/playing/pressure", 0.5)
-    player.write("/playing/press", 3.0)
-    assert (listener["/bow/speed"], listener["/bow/pressure"], listener.press) == (0.3, 0.5, 3.0)
-
-
 def test_the_bow_stays_still_and_the_finger_up_when_no_note_sounds(player, listener):
     player.write("/playing/speed", 0.3)
     player.write("/playing/press", 3.0)

@@ -139,7 +139,7 @@ def test_a_preset_may_have_a_name_in_any_script(presets):
     for name in ("二胡 独奏", "ä", "椰胡_2", "Ёлка"):
         presets.save(name, DEFAULTS)
         assert name in presets.names()
-        assert presets.load(name).values == presets.load(name).values
+        assert presets.load(name).values.keys() == set(SAVED)
         presets.delete(name)
     assert not list(presets.own.iterdir())
 
@@ -223,16 +223,6 @@ def test_a_preset_of_ones_own_hides_a_shipped_one_until_it_is_deleted(presets, p
     presets.delete("tremolo")
     assert presets.load("tremolo").values["/playing/tremolo"] > 7.0
     assert presets.shipped.joinpath("tremolo.toml").exists()
-
-
-def test_a_name_that_there_is_not_lists_those_there_are(presets):
-    for call in (presets.load, presets.find):
-        with pytest.raises(
-            PresetError, match=r"no preset 'x' \(there are: chamber, courtyard, dry, flau"
-        ):
-            call("x")
-    with pytest.raises(PresetError, match="no preset 'x'"):
-        presets.delete("x")
 
 
 def test_a_file_is_read_once_whether_it_is_right_or_not_and_again_when_it_has_changed(

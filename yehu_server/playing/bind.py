@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import SimpleNamespace
+from typing import Any
 
+from yehu_server.compile.jit import uncompiled
+from yehu_server.core.midi import curves
+from yehu_server.core.midi.tables import EXPONENTIAL, LINEAR, POINTS, S
 from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing import sources
+
+CURVES: dict[Any, int] = {Curve.LIN: LINEAR, Curve.EXP: EXPONENTIAL, Curve.S: S}  # in tables
 
 
 @dataclass(frozen=True)
@@ -23,32 +30,6 @@ class Breakpoints:
     def value(self) -> list[list[float]]:
         """The points as a file has them."""
         return [list(point) for point in self.points]
-
-    def fraction_at(self, position: float) -> float:
-        """Fraction of the span at a position of the source."""
-        after = bisect_right(self.points, position, key=lambda point: point[0])
-        after = min(max(after, 1), len(self.points) - 1)
-        (x0, y0), (x1, y1) = self.points[after - 1], self.points[after]
-        return y1 if position >= x1 else y0 + (y1 - y0) * (position - x0) / (x1 - x0)
-
-    def from_unit(self, unit: float, lo: float, hi: float) -> float:
-        """See `Curve.from_unit`."""
-        return lo + (hi - lo) * self.fraction_at(unit)
-
-    def fraction_of(self, value: float, lo: float, hi: float) -> float:
-        """Fraction of the span at a value, clamped to the fractions that the points reach."""
-        fractions = [fraction for _, fraction in self.points]
-        return min(max(Curve.LIN.to_unit(value, lo, hi), min(fractions)), max(fractions))
-
-    def to_unit(self, value: float, lo: float, hi: float) -> float:
-        """See `Curve.to_unit`; the lowest such position where several map to the value."""
-        fraction = self.fraction_of(value, lo, hi)
-        for (x0, y0), (x1, y1) in zip(self.points, self.points[1:], strict=False):
-            if y0 == fraction:
-                return x0
-            if min(y0, y1) <= fraction <= max(y0, y1):
-                return min(x0 + (x1 - x0) * (fraction - y0) / (y1 - y0), x1)
-        return 1.0  # by rounding, past the last point
 
 
 @dataclass(frozen=True)
@@ -121,20 +102,33 @@ class Bind:
         }
         return tuple(term for term, is_set in terms.items() if is_set)
 
+    @cached_property
+    def _row(self) -> Any:
+        """What compiled code reads of it (``midi.tables``), as the only row."""
+        points = self.curve.points if isinstance(self.curve, Breakpoints) else ()
+        lo, hi = self.ends
+        return SimpleNamespace(
+            invert=[float(self.invert)],
+            curve=[CURVES.get(self.curve, POINTS)],
+            lo=[lo],
+            hi=[hi],
+            first_point=[0],
+            points=[len(points)],
+            x=[x for x, _ in points],
+            y=[y for _, y in points],
+        )
+
     def from_unit(self, position: float) -> float:
         """Map the source's position, 0 to 1, to the target's value."""
-        return self.curve.from_unit(self._inverted(position), *self.ends)
+        return float(uncompiled(curves.from_unit)(self._row, 0, position))
 
     def to_unit(self, value: float) -> float:
         """Find the position, 0 to 1, that `from_unit` maps to a value, clamped to the span."""
-        return self._inverted(self.curve.to_unit(value, *self.ends))
+        return float(uncompiled(curves.to_unit)(self._row, 0, value))
 
     def semitones(self, position: float, bend_range: float) -> float:
         """Map the position of a pitch wheel to semitones, for a bend range in semitones."""
-        return (2.0 * self.curve.from_unit(self._inverted(position), 0.0, 1.0) - 1.0) * bend_range
-
-    def _inverted(self, position: float) -> float:
-        return 1.0 - position if self.invert else position
+        return (2.0 * replace(self, span=(0.0, 1.0)).from_unit(position) - 1.0) * bend_range
 
 
 def override_key(bind: Bind) -> tuple[str, tuple[int, ...]]:

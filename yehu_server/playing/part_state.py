@@ -107,7 +107,7 @@ class PartState:
     def frame_of(self, arrived_ns: int | None = None) -> int:
         """The frame for a message that arrived at this `clocks.monotonic_ns`; by default, now."""
         moment = clocks.monotonic_ns() if arrived_ns is None else arrived_ns
-        return int(self.instrument.frame_at(moment)) + self.delay
+        return int(self.instrument.frame_at(moment)) + self.instrument.delay
 
     # -- parameters --------------------------------------------------------------------------
 

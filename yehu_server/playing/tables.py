@@ -11,16 +11,14 @@ from yehu_server.core.midi import tables
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.core.player.parameter_indices import INDEX
 from yehu_server.params.preset_file import Preset
-from yehu_server.params.spec import Curve
 from yehu_server.params.table import find
 from yehu_server.playing import sources
-from yehu_server.playing.bind import Bind, Breakpoints
+from yehu_server.playing.bind import CURVES, Bind, Breakpoints
 from yehu_server.playing.mapping import Mapping as Binds
 from yehu_server.playing.tuning import KEYS, RangePolicy, Tuning
 
 Array = Any
 
-CURVES = {Curve.LIN: tables.LINEAR, Curve.EXP: tables.EXPONENTIAL, Curve.S: tables.S}
 WORDS = {
     sources.BEND: tables.BEND, sources.PRESSURE: tables.PRESSURE,
     sources.POLY_PRESSURE: tables.POLY_PRESSURE, sources.VELOCITY: tables.VELOCITY,

@@ -11,17 +11,6 @@ HEARD_S = 0.01  # within which what arrives is played: the player's delay and a 
 # ---------------------------------------------------------------- notes, bow and finger
 
 
-def test_a_note_sounds_until_it_is_ended(still):
-    still.send("/note", 67.0, 90.0)
-    assert rms(still.pass_time(0.5)[-9600:]) > 1e-3
-    assert still.player.pitch == 67.0
-    still.send("/note/off", 67.0)
-    still.pass_time(0.3)
-    assert still.player.pitch is None
-    assert [value for _, address, value in still.events if address == "/bow/side"][-1] == 0.0
-    assert rms(still.pass_time(2.5)[-9600:]) < 1e-3
-
-
 def test_pitch_slides_the_sounding_note_steplessly(still):
     still.send("/note", 67, 90)
     still.pass_time(0.1)

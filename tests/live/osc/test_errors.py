@@ -31,6 +31,7 @@ REFUSED: list[tuple[str, list[tuple[Any, ...]], str]] = [
     ("/get", [("/bow/[fs",), ("/bow/{force,side",), ("[",), ("{",)], "never closed"),
     ("/get", [("/bow/" + "*" * 5000,)], "too long"),
     ("/get", [("/status/nota",)], "did you mean /yehu/status/note?"),
+    ("/get", [("/yehu/playing/vibratto",)], "did you mean /yehu/playing/vibrato"),
     ("/get", [("/yehu/note",)], "/yehu/note has no value"),
     ("/get", [("/yehu/*/status/note",)], "matches no address; * ends at a /"),
     ("/status/nota", [(1.0,)], "did you mean /yehu/status/note?"),

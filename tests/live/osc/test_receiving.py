@@ -16,9 +16,9 @@ from yehu_server.live import traffic_limits as limits
 from yehu_server.live.network import Allowed
 from yehu_server.live.osc import receiving
 from yehu_server.live.osc.packets import pack
-from yehu_server.live.osc.receiving import AT_ONCE, OscPorts
+from yehu_server.live.osc.receiving import OscPorts
 from yehu_server.live.osc.schedule import AHEAD_S
-from yehu_server.live.osc.work_queue import SLICE_NS, WorkQueue
+from yehu_server.live.osc.work_queue import WorkQueue
 
 HOST = "127.0.0.1"
 BURST = 20_000
@@ -261,21 +261,6 @@ def test_who_has_too_much_waiting_loses_what_comes_and_others_lose_nothing(
     until(lambda: b"again" in keeper.bodies, "it to be heard again")
     assert sorted(keeper.bodies) == [b"again", *[b"x" * 16_000] * 4, b"y" * 16_000]
     assert ports.traffic.excess == 6
-
-
-@pytest.mark.parametrize("others", [1, 5])
-def test_what_others_send_without_end_delays_a_packet_by_a_slice_of_each_only(
-    listen, client, keeper, until, others
-):
-    ports = listen(start=False)
-    flooding, quiet = [client(ports) for _ in range(others)], client(ports)
-    for each in flooding:
-        send_all(each, [b"flood"] * 100)
-    quiet.take(b"/note\0\0\0")
-    keeper.takes_s = SLICE_NS * 1e-9
-    ports.start()
-    until(lambda: b"/note\0\0\0" in keeper.bodies, "the note")
-    assert keeper.bodies.index(b"/note\0\0\0") <= 100 * others // AT_ONCE * 8 + 4 * others
 
 
 def test_there_is_osc_over_ipv6(listen, client, keeper):

@@ -115,20 +115,14 @@ def test_none_end_what_is_not_subscribed(still):
     for call, words in ("/unsubscribe", ()), ("/unsubscribe", (7400,)), ("/subscribe", (0,)):
         (refused,) = still.ask(call, *words)
         assert refused.arguments[1].startswith("nothing is subscribed")
-    still.ask("/subscribe", 60, 7400)
-    assert still.handler.clients.subscribers == 1
-    assert "/yehu/unsubscribed" in [one.address for one in still.ask("/unsubscribe")]
-    assert still.handler.clients.subscribers == 0
+    for begun, *ended in ((60, 7400), "/unsubscribe"), ((60,), "/subscribe", 0):
+        still.ask("/subscribe", *begun)
+        assert still.handler.clients.subscribers == 1
+        assert "/yehu/unsubscribed" in [one.address for one in still.ask(*ended)]
+        assert still.handler.clients.subscribers == 0
 
 
 # ---------------------------------------------------------------- the status
-
-
-def test_none_subscribe_for_no_time(still):
-    still.send("/subscribe", 60)
-    assert still.handler.clients.subscribers == 1
-    assert "/yehu/unsubscribed" in [message.address for message in still.ask("/subscribe", 0)]
-    assert still.handler.clients.subscribers == 0
 
 
 def test_who_subscribes_to_the_status_is_sent_it_at_once_and_then_each_change(still):

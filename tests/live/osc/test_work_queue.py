@@ -170,10 +170,3 @@ def test_one_may_hold_exactly_what_it_leaves_free():
         assert shares.held(ONE) == sum(taken)
         assert shares.take(TWO, 1)
     assert not Shares(7).take(ONE, 4)
-
-
-def test_a_note_finds_room_beside_two_hundred_that_send_as_much_as_they_can():
-    shares, crowd = Shares(limits.WAITING), [FakePeer(port) for port in range(200)]
-    while sum([shares.take(peer, 16_000) for peer in crowd]):
-        pass
-    assert shares.take(FakePeer(300), limits.OVERHEAD + 28)

@@ -33,7 +33,7 @@ def acts(group: str, context: CallContext) -> dict[str, Act]:
     part = PartCalls(group, context)
     found: dict[str, Act] = {}
     for param in part.params:
-        found[param.address] = partial(part.set, address=param.address)
+        found[param.address] = partial(part.set, param=param)
         found[param.address + UNIT] = partial(part.set_unit, param=param)
     for kind, row in _ROWS:
         if not (group and row.is_for_all):
@@ -46,7 +46,8 @@ def acts(group: str, context: CallContext) -> dict[str, Act]:
 def _carry_out(row: Call, carrier: GroupCalls, request: Request) -> None:
     """Carry out a call; the error of wrong arguments names them."""
     try:
-        row.act(carrier, request)
+        if not (row.is_momentary and request.is_let_go):
+            row.act(carrier, request)
     except CountError as error:
         names = " ".join(argument.name.upper() for argument in row.arguments)
         raise RefusedError(f"{error} ({names})" if names else str(error)) from None

@@ -52,12 +52,19 @@ class Request:
             wanted = f"{least}" if least == most else f"{least} to {most}"
             plural = "" if wanted == "1" else "s"
             raise CountError(f"expected {wanted} argument{plural}, got {count}")
-        given = self.arguments[after:] if after else self.arguments
-        return [_number(one, place, switches) for place, one in enumerate(given, after)]
+        numbers = []
+        for place, one in enumerate(self.arguments[after:], after):
+            is_switch = isinstance(one, bool)
+            if not isinstance(one, float | int) or (is_switch and not switches):
+                raise KindError(place, _kind(one))
+            if not math.isfinite(one):
+                raise RefusedError(f"{one} is not finite")
+            numbers.append(float(one))
+        return numbers
 
     @property
     def is_let_go(self) -> bool:
-        """Whether it is what a momentary button sends as it is let go: 0 or F; see `numbers`."""
+        """Whether it has what a momentary button sends as it is let go: 0 or F; see `numbers`."""
         return self.numbers(0, 1, switches=True) == [0.0]
 
     def word(self) -> str:
@@ -74,15 +81,6 @@ class Request:
         word = replace(self, arguments=self.arguments[:1]).word()
         given = self.numbers(0, most, after=1, switches=True)
         return [word, *(number != 0.0 for number in given), *[False] * (most - len(given))]
-
-
-def _number(argument: Any, place: int, switches: bool) -> float:
-    """A number from a float, an int, or a switch; raises KindError, or RefusedError."""
-    if isinstance(argument, float | int) and (switches or not isinstance(argument, bool)):
-        if math.isfinite(argument):
-            return float(argument)
-        raise RefusedError(f"{argument} is not finite")
-    raise KindError(place, _kind(argument))
 
 
 def _kind(argument: Any) -> str:
@@ -125,6 +123,7 @@ class Call:
     # Carries it out for a group of addresses; raises YehuError where it refuses.
     act: Callable[[Any, Request], None]
     is_for_all: bool = False  # whether no part has one of its own
+    is_momentary: bool = False  # whether a button may send it, and then 0 or F as it is let go
     takes_patterns: bool = False  # whether a pattern reaches it: what plays, and loses nothing
     reads_files: bool = False  # whether it waits for files that are being written
 

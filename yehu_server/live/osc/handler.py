@@ -53,11 +53,12 @@ class OscHandler:
         self._named_in_full = {
             PREFIX + one for one in found if split_group(one)[1] in NAMED_IN_FULL
         }
-        self._acts = {PREFIX + address: act for address, act in found.items()}
-        self.addresses = context.addresses = tuple(self._acts)
+        acts_at = {PREFIX + address: act for address, act in found.items()}
+        self.addresses = context.addresses = tuple(acts_at)
         # Messages of another server that was made to send us its values.
-        self._acts |= dict.fromkeys(IGNORED, lambda _call: None)
-        self._acts |= {f"{PREFIX}{group}/subscribed": self._mute for group in self._groups}
+        acts_at |= dict.fromkeys(IGNORED, lambda _call: None)
+        acts_at |= {f"{PREFIX}{group}/subscribed": self._mute for group in self._groups}
+        self._known = {address: {address: act} for address, act in acts_at.items()}
         self._mappings: list[Mapping] = []
         self._own: dict[str, Act] = {}
 
@@ -85,7 +86,8 @@ class OscHandler:
                 if message is None:
                     continue
                 self.counts.messages += not is_due
-                actions = self._actions(message.address, peer)
+                address = message.address
+                actions = self._known.get(address) or self._actions(address, peer)
                 if message.due_s is not None and message.due_s > now:
                     if actions:
                         self._keep(message, peer)
@@ -162,9 +164,7 @@ class OscHandler:
         return actions
 
     def _found(self, address: str) -> dict[str, Act]:
-        """By address, what carries out the calls at one or at a pattern; none where unknown."""
-        if act := self._acts.get(address):
-            return {address: act}
+        """By address, what carries out calls of the user's own, or at a pattern; else none."""
         own = self._own_acts()
         if is_own(address) or split_group(address.removeprefix(PREFIX))[0]:
             own = own | self._learn_acts(address, own)
@@ -175,7 +175,7 @@ class OscHandler:
             reached = [one for one in found if one not in self._named_in_full]
             if not reached:
                 raise RefusedError(f"{found[0]} takes no pattern: send its whole address")
-            return {one: own.get(one) or self._acts[one] for one in reached}
+            return {one: own.get(one) or self._known[one][one] for one in reached}
         return {}
 
     def _mute(self, call: Request) -> None:

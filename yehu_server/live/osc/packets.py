@@ -143,9 +143,9 @@ def _argument(data: bytes, tag: str, place: int) -> tuple[Any, int]:
     if tag == "b":
         (size,) = struct.unpack_from(">i", data, place)
         start = place + 4
-        if size < 0:
+        if not 0 <= size <= len(data) - start:
             raise PacketError("a blob has a wrong length")
-        return data[start : start + size], _padded_to(start + size, data)
+        return data[start : start + size], (start + size + 3) & ~3
     raise PacketError(f"unknown type {tag!r}")
 
 
@@ -158,15 +158,10 @@ def _after_text(data: bytes, place: int) -> int:
     end = data.find(b"\0", place)
     if end < 0:
         raise PacketError("a string without an end")
-    return _padded_to(end + 1, data)
-
-
-def _padded_to(place: int, data: bytes) -> int:
-    """The next multiple of four; raises PacketError beyond the end."""
-    place = (place + 3) & ~3
-    if place > len(data):
+    after = (end + 4) & ~3
+    if after > len(data):
         raise PacketError("cut short")
-    return place
+    return after
 
 
 class Bang:

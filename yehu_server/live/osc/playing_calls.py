@@ -45,15 +45,15 @@ class PartCalls(GroupCalls):
 
     # -- parameters --------------------------------------------------------------------------
 
-    def set(self, call: Request, address: str) -> None:
+    def set(self, call: Request, param: Param) -> None:
         """Set a parameter."""
-        param = find(address)
+        address = param.address
         if len(call.arguments) == 1 and isinstance(call.arguments[0], str) and address in NAMES:
             value = named(param, call.arguments[0])
         else:
             (value,) = call.numbers(1, switches=True)
         self._set(call, address, there_is(param, _whole(param, value)))
-        self._echo(call.peer, [address])
+        self._clients.echo(call.peer, [self._group + address])
 
     def _set(self, call: Request, address: str, value: float) -> None:
         accepted = self._player.set(address, value, frame=call.frame)
@@ -64,7 +64,7 @@ class PartCalls(GroupCalls):
         """Set a parameter by 0 to 1 of its range."""
         (unit,) = call.numbers(1, switches=True)
         self._set(call, param.address, _whole(param, offered(param).from_unit(unit)))
-        self._echo(call.peer, [param.address + UNIT])
+        self._clients.echo(call.peer, [self._group + param.address + UNIT])
 
     def move(self, call: Request, bind: Bind) -> None:
         """Move what the mapping binds to an address of the user's own."""
@@ -143,11 +143,11 @@ class PartCalls(GroupCalls):
 
     @plays("/bend", "Slides the finger away from the note.", like("/playing/bend", "semitones"))
     def _bend(self, call: Request) -> None:
-        self.set(call, "/playing/bend")
+        self.set(call, find("/playing/bend"))
 
     @plays("/press", "How hard the finger presses the string.", like("/playing/press", "newtons"))
     def _press(self, call: Request) -> None:
-        self.set(call, "/playing/press")
+        self.set(call, find("/playing/press"))
 
     @plays("/articulation", "Chooses what both hands do in the next notes.", ARTICULATION)
     def _articulation(self, call: Request) -> None:
@@ -162,27 +162,24 @@ class PartCalls(GroupCalls):
     @plays(
         "/release",
         "Gives the bow and fingers that you moved directly back to the player (no time).",
+        is_momentary=True,
     )
     def _release(self, call: Request) -> None:
-        if call.is_let_go:
-            return
         self._player.lift(frame=call.frame)  # of a bow that no note draws
         self._player.release(frame=call.frame)
 
     @osc_call(
-        "/panic", "Ends all notes and all sound, and drops messages that wait for their time."
+        "/panic",
+        "Ends all notes and all sound, and drops messages that wait for their time.",
+        is_momentary=True,
     )
     def _panic(self, call: Request) -> None:
-        if call.is_let_go:
-            return
         self._context.schedule.drop_part(self._group)
         for player in self._players:
             player.panic(frame=call.frame)
 
-    @osc_call("/reset", "The same, and sets every parameter to its default.")
+    @osc_call("/reset", "The same, and sets every parameter to its default.", is_momentary=True)
     def _reset(self, call: Request) -> None:
-        if call.is_let_go:
-            return
         self._context.schedule.drop_part(self._group)
         for player in self._players:
             player.reset(frame=call.frame)

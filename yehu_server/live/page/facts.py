@@ -24,14 +24,14 @@ from yehu_server.params.preset_file import SAVED, Preset
 from yehu_server.params.spec import Param
 from yehu_server.params.table import SLOT, TABLE
 from yehu_server.playing import learner, sources
-from yehu_server.playing.bind import Bind
+from yehu_server.playing.bind import CURVES, Bind
 from yehu_server.playing.mapping import DEFAULT, load, shipped_mappings
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.options import AS_IT_SINGS
 from yehu_server.playing.part_state import ELSEWHERE
 from yehu_server.playing.pitch_and_level import NOTE_NAMES
 from yehu_server.playing.preset_folders import read_preset
-from yehu_server.playing.tables import CURVES, WORDS, Controls, make_tables
+from yehu_server.playing.tables import WORDS, Controls, make_tables
 from yehu_server.playing.tuning import (
     EQUAL,
     KEYS,

@@ -5,13 +5,11 @@ thirds of the time.
 """
 
 import contextlib
-from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
 from numba import types
 from numba.core import (
     base,
-    byteflow,
     errors,
     event,
     ir,
@@ -22,7 +20,6 @@ from numba.core import (
     typeinfer,
 )
 from numba.core.types.functions import BaseFunction
-from numba.core.typing.context import BaseContext
 
 _resolve = BaseFunction.get_call_type
 
@@ -104,18 +101,6 @@ def _size_once(context: Any, kind: Any) -> int:
     return _sizes[name]
 
 
-_resolve_value = BaseContext.resolve_value_type
-
-
-def _resolve_value_at_once(context: Any, value: Any) -> Any:
-    """The type of a value: of functions and modules, which numba looks for last, after an error."""
-    if isinstance(value, BuiltinFunctionType | FunctionType | ModuleType):
-        found = context._get_global_type(value)  # noqa: SLF001
-        if found is not None:
-            return found
-    return _resolve_value(context, value)
-
-
 _find_function = base.BaseContext.get_function
 
 
@@ -178,10 +163,7 @@ for _owner, _name, _instead in (
     (BaseFunction, "get_call_type", _resolve_once),
     (ir.Inst, "_rec_list_vars", _list_variables),
     (base.BaseContext, "get_abi_sizeof", _size_once),
-    (BaseContext, "resolve_value_type", _resolve_value_at_once),
     (errors, "_termcolor_inst", _Colourless()),
-    # The name of a record has thousands of letters, put together again each time.
-    (types.Record, "__repr__", lambda record: record.name),
     (base.BaseContext, "get_function", _find_function_at_once),
     (postproc.PostProcessor, "run", _process_last),
     (lowering, "new_error_context", _ErrorContext),
@@ -189,6 +171,5 @@ for _owner, _name, _instead in (
     (event, "start_event", _ignore_event),
     (event, "end_event", _ignore_event),
     (event, "trigger_event", _no_event),
-    (byteflow._logger, "debug", _ignore_event),  # noqa: SLF001
 ):
     setattr(_owner, _name, _instead)

@@ -161,6 +161,20 @@ def test_strokes_in_a_hurry_come_sooner_and_lighter():
     assert wrong == []
 
 
+def test_a_low_note_in_a_hurry_has_as_many_periods_to_begin_in_as_a_middle_one():
+    took = {}
+    for key in (65, 70, 82, 89):
+        playing = Playing(variation=0.0, listening=0.0)
+        playing.on(key)
+        playing.play(0.08)
+        playing.off(key)
+        playing.on(key)
+        playing.play(0.005)
+        took[key] = HOP + int(playing.controls["remaining"][SLOTS.bow_speed])
+    assert took[70] / took[65] == pytest.approx(2.0 ** (-5 / 12), rel=0.02)
+    assert took[89] == took[82] < took[70]
+
+
 def test_a_quick_stroke_on_the_outer_string_turns_as_heavily_as_it_may_and_a_heavy_one_as_it_is():
     wrong = []
     for key, attack, asked, heavier in (

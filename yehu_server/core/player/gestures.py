@@ -12,11 +12,12 @@ import numpy as np
 
 from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.controls.slots import SLOTS
-from yehu_server.core.physics.elementary import exp, log10
+from yehu_server.core.physics.elementary import exp, exp2, log10
 from yehu_server.core.player.harmonics import GAINS_DB, NONE, node_of, string_of
 from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.phrasing import (
     HURRIED_ATTACK_MS,
+    HURRIED_ATTACK_PERIODS,
     HURRIED_RELEASE,
     USUAL_PHRASING,
     deviate,
@@ -276,7 +277,9 @@ def is_immediate(step: Any) -> bool:
 def attack_ms(p: Any) -> float:
     """The time in which a lifted bow reaches its speed and force."""
     usual = p.value[PLAYING.attack] * struck_attack(p) * p.gesture.attack
-    return float(usual + p.hurry * min(HURRIED_ATTACK_MS - usual, 0.0))
+    hz = p.a4 * exp2((p.held_pitch[max(p.sounding, 0)] - 69.0) / 12.0)
+    quickest = max(HURRIED_ATTACK_MS, 1e3 * HURRIED_ATTACK_PERIODS / hz)
+    return float(usual + p.hurry * min(quickest - usual, 0.0))
 
 
 @compiled_exactly

@@ -85,6 +85,9 @@ MIN_LEAP, MAX_LEAP, LONG_S = 4.5, 9.5, 0.3
 # detached).
 EASY_S, HURRIED_S = 0.16, 0.1
 HURRIED_ATTACK_MS = 14.0
+# So many periods at least, in which a string is caught [Guettler]: of low notes on the inner string
+# one in fifteen slipped twice in each. Tried at 5 to 14.
+HURRIED_ATTACK_PERIODS = 11.0
 HURRIED_WEIGHT, HURRIED_RELEASE = 0.7, 0.65  # factors
 
 

@@ -1,5 +1,7 @@
 """Several parts by OSC: whose notes, values and services are whose."""
 
+from pathlib import Path
+
 import pytest
 from web_client import walk
 from wire import f32
@@ -209,7 +211,7 @@ def test_what_a_part_learns_all_parts_of_its_mapping_have(still, players, monkey
     other = Mapping("other", ())
     players[2].remap(other, frame=0)
     new = Mapping("keyboard", (Bind("cc 20", VOLUME),))
-    monkeypatch.setattr(learned, "learn", lambda *_, **__: (new, "a file"))
+    monkeypatch.setattr(learned, "learn", lambda *_, **__: (new, Path("a file")))
     (answer,) = still.ask("/part/2/learn", "/yehu/part/2/playing/volume")
     assert (answer.address, answer.arguments[0]) == (
         "/yehu/part/2/learning",

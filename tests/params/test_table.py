@@ -9,7 +9,7 @@ from yehu_server.api.checks import setting
 from yehu_server.errors import ParameterError
 from yehu_server.params.articulations import ARTICULATIONS
 from yehu_server.params.spec import Curve, Place
-from yehu_server.params.table import ENGINE, NAMES, TABLE, assignment, find, read
+from yehu_server.params.table import ENGINE, NAMES, TABLE, assignment, find, offered, read
 
 # ---------------------------------------------------------------- every row
 
@@ -64,8 +64,8 @@ def test_zero_to_one_is_the_whole_range_and_comes_back_from_each_value():
         assert (param.from_unit(-1.0), param.from_unit(2.0)) == (param.lo, param.hi), param.address
         assert [param.to_unit(step) for step in steps] == pytest.approx(units, abs=1e-9)
         assert (param.to_unit(param.lo - 1.0), param.to_unit(param.hi + 1.0)) == (0.0, 1.0)
-        values = {param.address: param.from_unit(0.25)}
-        assert read(values, param.address) == param.from_unit(0.25)
+        values = {param.address: offered(param).from_unit(0.25)}
+        assert read(values, param.address) == values[param.address]
         assert read(values, param.address + "/unit") == pytest.approx(0.25)
 
 

@@ -2,7 +2,7 @@
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -63,7 +63,7 @@ def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Pl
     for note, active, begin_s, written_end_s in zip(notes, actives, *times, strict=True):
         end_s = written_end_s
         if note.marks or active.short:
-            end_s = _sounding_end(note, active, begin_s, end_s, slurs.over(note) is not None)
+            end_s = _sounding_end(note, active, begin_s, end_s, slurs.over(note))
         if breaths:
             at = bisect_right(breaths, note.beat)
             if at < len(breaths) and breaths[at] <= note.end:
@@ -141,21 +141,17 @@ class _Over:
     """Spans of one kind, found by the notes under them."""
 
     def __init__(self, spans: Sequence[Span], name: str) -> None:
-        own = sorted((span for span in spans if span.name == name), key=lambda span: span.begin)
-        self._begins = [float(span.begin) for span in own]
-        # The span that reaches farthest, of those up to each: enough to answer for any note.
-        self._farthest: list[Span] = []
-        for span in own:
-            last = self._farthest[-1:] or [span]
-            self._farthest.append(max(span, *last, key=lambda each: each.end))
-        self._ends = [float(span.end) for span in self._farthest]
+        own = sorted((float(each.begin), float(each.end)) for each in spans if each.name == name)
+        self._begins = [begin for begin, _ in own]
+        # The farthest end of the spans up to each: enough to answer for any note.
+        self._ends = [*accumulate((end for _, end in own), max)]
 
     def joins(self, beat: float) -> bool:
         """Whether a span is over both the note that ends and the one that begins at a beat."""
         at = bisect_left(self._begins, beat) - 1
         return at >= 0 and self._ends[at] >= beat
 
-    def over(self, note: Note) -> Span | None:
-        """A span over a note, if there is one."""
+    def over(self, note: Note) -> bool:
+        """Whether a span is over a note."""
         at = bisect_left(self._begins, note.ends_at) - 1
-        return self._farthest[at] if at >= 0 and self._ends[at] >= note.begins_at else None
+        return at >= 0 and self._ends[at] >= note.begins_at

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import NamedTuple
 
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Sign, Span
@@ -44,8 +45,7 @@ class RawNote:
     turns: frozenset[int] = frozenset()  # the passes of a repeat in which it sounds; empty: all
 
 
-@dataclass(frozen=True)
-class RawDirection:
+class RawDirection(NamedTuple):
     """A direction at a beat of its bar."""
 
     at: Fraction
@@ -208,7 +208,7 @@ class Directions:
 
     def add_bar(self, directions: list[RawDirection], begin: Fraction) -> None:
         """Add the directions of a bar that begins at a beat."""
-        for raw in sorted(directions, key=lambda raw: raw.at):
+        for raw in sorted(directions, key=lambda raw: float(raw.at)):
             self._add(raw, begin + raw.at)
 
     def _add(self, raw: RawDirection, beat: Fraction) -> None:
@@ -216,7 +216,8 @@ class Directions:
             if raw.name in notated.DYNAMICS or raw.name in notated.FORCED:
                 self._hairpin.end(beat)
             sign = Sign(beat, raw.name, raw.value)
-            if sign not in self.signs[-8:]:  # two staves may say the same
+            same = (each for each in self.signs[-8:] if each.name == sign.name)
+            if sign not in same:  # two staves may say the same
                 self.signs.append(sign)
         elif raw.kind == "wedge" and raw.name in notated.HAIRPINS:
             self._hairpin.end(beat)
@@ -281,7 +282,9 @@ def parts_of(
         more = f", staff {staff}" if len({*staves}) > 1 else ""
         if staves.count(staff) > 1 and number:
             more += f", voice {voice}"
-        spans = sorted((*each.spans, *directions.spans), key=lambda span: (span.begin, span.end))
+        spans = sorted(
+            (*each.spans, *directions.spans), key=lambda span: (float(span.begin), float(span.end))
+        )
         if each.notes:
             found.append(Part(name + more, tuple(each.notes), tuple(spans), signs))
     return found, directions.tempi

@@ -161,6 +161,20 @@ def test_strokes_in_a_hurry_come_sooner_and_lighter():
     assert wrong == []
 
 
+def test_a_bow_that_turns_takes_less_than_a_third_of_the_attack_and_one_from_rest_more():
+    took = []
+    for rest in (0.0, 1.0):
+        playing = Playing(variation=0.0, listening=0.0, phrasing=0.5, attack=40.0)
+        playing.on(74)
+        playing.play(0.4)
+        playing.off(74)
+        playing.play(rest)
+        playing.on(74)
+        playing.play(0.005)
+        took.append((HOP + int(playing.controls["remaining"][SLOTS.bow_speed])) / RATE)
+    assert took[0] < 0.04 / 3.0 < 0.04 < took[1]
+
+
 def test_a_low_note_in_a_hurry_has_as_many_periods_to_begin_in_as_a_middle_one():
     took = {}
     for key in (65, 70, 82, 89):

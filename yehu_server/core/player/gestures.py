@@ -32,9 +32,10 @@ ORDINARY = 0
 # half in 120 to 250.
 USUAL_S = 1.2
 SHORT_ATTACK, LONG_ATTACK, LONG_S, UNEVEN_ATTACK = 0.8, 3.4, 1.2, 0.3
-# The same of a bow that turns: the level falls by some 10 dB then, a fiddle's by 5 to 15;
-# in twice this time by 16 (scripts/liveliness.py).
-TURNING = 0.4
+# The same of a bow that turns, and the least: the level falls by up to 12 dB then in nine of ten, a
+# fiddle's by 5 to 15; at 0.4 by 13, at 0.8 by more (scripts/liveliness.py). At 0.22 some notes
+# begin an octave up.
+TURNING = 0.3
 # How much longer the bow takes to leave the string after a note of LONG_S, so that there is no hole
 # between phrases (scripts/liveliness.py: dips of 28 to 34 dB without).
 EASED_RELEASE = 0.9
@@ -222,7 +223,7 @@ def shape(p: Any, c: Any) -> None:
         longer = min(length / LONG_S, 1.0)
         factor = SHORT_ATTACK + (LONG_ATTACK - SHORT_ATTACK) * longer
     factor *= max(uneven, 0.4)
-    g.attack = max(1.0 + amount * (factor - 1.0), 0.4)
+    g.attack = max(1.0 + amount * (factor - 1.0), TURNING)
 
 
 @compiled_exactly

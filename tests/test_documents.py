@@ -122,7 +122,11 @@ def test_what_is_no_toml_is_told_in_plain_words():
         ("a = 1", "this name is there already"),
         ("b = [1 2]", "expected , or ]"),
         ("b = {c = 1", "expected , or }"),
-        (r'b = "c:\users"', r"a backslash in text is written \\\\"),
+        (r'b = "c:\users"', r"a backslash in text is written \\"),
+        (r'b = "\ud800"', r"a backslash in text is written \\"),
+        ("b = 2026-02-30", "expected a value; text is quoted"),
+        ("b = {c = 1, c = 2}", "this name is there already"),
+        ('b = "\x01"', "expected no control character"),
         ('b = "tune', "text without its closing quotation mark"),
     ):
         with pytest.raises(MappingError) as error:

@@ -36,13 +36,14 @@ _PIECE = re.compile(
 _TOML_ERRORS = {
     r"Invalid (statement|initial)": "expected NAME = VALUE or [TABLE]; names with / are quoted",
     r"Expected '='": "expected = after the name",
-    r"Invalid value": "expected a value; text is quoted",
-    r"Invalid|Unescaped": r"a backslash in text is written \\\\",
+    r"Invalid (value|date)": "expected a value; text is quoted",
+    r"Invalid|Unescaped|Escaped": r"a backslash in text is written \\",
     r"Expected newline": "expected the end of the line after the value",
-    r"Cannot": "this name is there already",
+    r"Cannot|Duplicate": "this name is there already",
     r"Unclosed array": "expected , or ]",
     r"Unclosed inline": "expected , or }",
     r"Expected '\]": "expected ] after the name of a table",
+    r"(Illegal|Found invalid) character '(?!\\n)": "expected no control character",
     r"": "text without its closing quotation mark",
 }
 _LINE = re.compile(r"\bline ([0-9]+)")

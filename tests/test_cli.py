@@ -114,13 +114,12 @@ def test_headings_of_help_are_written_as_their_words_are(monkeypatch):
 
 def test_help_names_its_pages_from_where_one_is(monkeypatch, tmp_path):
     root = Path(__file__).parents[1]
-    pages = re.compile(r"[^\s(]+/[a-z_]+\.md")
-    for folder, home, begin in ((root, tmp_path, "docs"), (tmp_path, root.parent, "~")):
+    for folder, home, begin in (root, tmp_path, ""), (tmp_path, root.parent, f"~/{root.name}/"):
         monkeypatch.chdir(folder)
         monkeypatch.setattr(Path, "home", lambda home=home: home)
-        shown = {page for parser in parsers() for page in pages.findall(parser.epilog or "")}
-        assert len(shown) > 10
-        assert {Path(page).parts[0] for page in shown} == {begin}
+        text = "\n".join(parser.epilog or "" for parser in parsers())
+        assert text.count(f"{begin}docs/") == text.count("docs/") > 10
+        assert ("/docs/" in text) == bool(begin)
 
 
 def test_the_examples_of_help_can_be_given():

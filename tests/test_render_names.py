@@ -179,7 +179,7 @@ def test_every_command_says_of_a_missing_file_the_same(refused, tmp_path, monkey
     tune = Path(__file__).parents[1] / "examples" / "tunes" / "twinkle.jianpu"
     monkeypatch.chdir(tmp_path)
     (name,) = re.findall(r"none\.\w+", words)
-    said = refused(*words.replace("TUNE", str(tune)).split())
+    said = refused(*(str(tune) if word == "TUNE" else word for word in words.split()))
     assert said == f"yehu-server: {name}: no such file\n"
 
 

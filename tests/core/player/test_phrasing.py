@@ -3,7 +3,7 @@
 import numpy as np
 from held_notes import Playing
 
-from yehu_server.core.controls.slots import FINGER_POSITION, SLOTS
+from yehu_server.core.controls.slots import FINGER_POSITION, FINGER_PRESS, SLOTS
 from yehu_server.params.articulations import ARTICULATIONS, NUMBER
 
 
@@ -38,6 +38,31 @@ def slide_s(phrasing: float, first: int, second: int, held_s: float = 0.5) -> fl
 def test_a_leap_from_a_long_note_slides():
     assert 0.06 < slide_s(0.5, 74, 79) < 0.12
     assert slide_s(1.0, 74, 79) > slide_s(0.5, 74, 79)
+
+
+def test_the_finger_slides_on_a_string_while_the_bow_is_off_and_else_the_next_one_steps():
+    wrong = []
+    for note, rest_s, values, slides in (
+        (78, 0.15, {}, True),
+        (88, 0.15, {}, True),
+        (78, 0.01, {}, True),  # the bow is still leaving
+        (78, 0.0, {}, False),  # legato
+        (66, 0.15, {}, False),  # on the other string
+        (78, 0.15, {"pizzicato": 1.0}, False),
+    ):
+        playing = Playing(variation=0.0, listening=0.0, phrasing=0.0, **values)
+        playing.on(86)
+        playing.play(0.3)
+        before = int(playing.player["finger"])
+        if rest_s > 0.0:
+            playing.off(86)
+            playing.play(rest_s)
+        playing.on(note)
+        (moving,) = playing.play(0.03, "value")
+        slid = playing.player["finger"] == before
+        if slid != slides or (moving[-1, FINGER_PRESS] > 0.0).sum() != 1:
+            wrong.append((note, rest_s, values, moving[:, FINGER_PRESS]))
+    assert wrong == []
 
 
 def first_bend(leap: float, **values: float) -> float:

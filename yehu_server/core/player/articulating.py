@@ -21,7 +21,7 @@ def articulate(p: Any, c: Any) -> None:
     g = p.gesture
     now = (c.frame - p.note_began) / p.rate
     length = gestures.note_length(p, g.row)
-    right_hand.ease_touch(p, c, now)
+    right_hand.ease_turning_pressure(p, c, now)
     move_bow(p, c, now, length)
     move_level(p, c)
     move_finger(p, c, now, length)

@@ -101,8 +101,8 @@ PLAYER = np.dtype(
         ("bowing", np.float64, BOWING_SIZE),  # how the sounding pitch is bowed
         ("hurry", np.float64),  # of a stroke soon after another: 0 to 1
         # The bow pressure of a quick stroke until the bow has turned, and the usual one after.
-        ("touched_with", np.float64),  # 0: no such stroke
-        ("touched_from", np.float64),
+        ("turning_pressure", np.float64),  # 0: no such stroke
+        ("pressure_after_turning", np.float64),
         ("balance", np.float64),  # dB
         ("louder_by", np.float64),  # dB, by brilliance
         # The variation: deviates of this note.

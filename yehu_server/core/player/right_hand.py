@@ -167,14 +167,14 @@ def set_attack_pressure(p: Any, c: Any) -> None:
     """
     usual = p.sent[BOW.pressure]
     quick = (SLOW_ATTACK_MS - gestures.attack_ms(p)) / (SLOW_ATTACK_MS - HURRIED_ATTACK_MS)
-    touched = usual + min(max(quick, 0.0), 1.0) * (QUICK_SHARE - usual)
+    heavier = usual + min(max(quick, 0.0), 1.0) * (QUICK_SHARE - usual)
     begins, ms = attack_pressure_factor(p) * usual, ATTACK_PRESSURE_MS
     if p.string == 0:
         lighter = max(INNER_ATTACK_FRACTION * usual, MIN_INNER_ATTACK)
         begins, ms = min(usual, lighter + p.hurry * (usual - lighter)), INNER_ATTACK_MS
-    elif touched > begins:
-        p.touched_from, p.touched_with = usual, touched
-        move_parameter(p, c, BOW.pressure, p.touched_with, 0.5 * gestures.attack_ms(p))
+    elif heavier > begins:
+        p.pressure_after_turning, p.turning_pressure = usual, heavier
+        move_parameter(p, c, BOW.pressure, p.turning_pressure, 0.5 * gestures.attack_ms(p))
         return
     if begins != usual:
         move_parameter(p, c, BOW.pressure, begins, 0.0)
@@ -182,13 +182,13 @@ def set_attack_pressure(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def ease_touch(p: Any, c: Any, now: float) -> None:
+def ease_turning_pressure(p: Any, c: Any, now: float) -> None:
     """Take back what a quick stroke began with, once the bow has turned, unless it was moved."""
-    if p.touched_with == 0.0 or now < 0.5e-3 * gestures.attack_ms(p):
+    if p.turning_pressure == 0.0 or now < 0.5e-3 * gestures.attack_ms(p):
         return
-    if p.sent[BOW.pressure] == p.touched_with:
-        move_parameter(p, c, BOW.pressure, p.touched_from, ATTACK_PRESSURE_MS)
-    p.touched_with = 0.0
+    if p.sent[BOW.pressure] == p.turning_pressure:
+        move_parameter(p, c, BOW.pressure, p.pressure_after_turning, ATTACK_PRESSURE_MS)
+    p.turning_pressure = 0.0
 
 
 @compiled_exactly

@@ -46,7 +46,8 @@ def test_the_finger_slides_on_a_string_while_the_bow_is_off_and_else_the_next_on
         (78, 0.15, {}, True),
         (88, 0.15, {}, True),
         (78, 0.01, {}, True),  # the bow is still leaving
-        (78, 0.0, {}, False),  # legato
+        (78, 0.0, {}, False),  # the bow turns
+        (78, None, {}, False),  # legato
         (66, 0.15, {}, False),  # on the other string
         (78, 0.15, {"pizzicato": 1.0}, False),
     ):
@@ -54,7 +55,7 @@ def test_the_finger_slides_on_a_string_while_the_bow_is_off_and_else_the_next_on
         playing.on(86)
         playing.play(0.3)
         before = int(playing.player["finger"])
-        if rest_s > 0.0:
+        if rest_s is not None:
             playing.off(86)
             playing.play(rest_s)
         playing.on(note)

@@ -60,8 +60,9 @@ MAX_SEMITONES_FROM_KEY = 0.5
 # With the bow off, the finger slides to its next place on a string. Lifted, it would pluck the
 # string in front of the next finger, and the bow catch that with periods three times too long: of
 # leaps down to F5 to A5 after a rest, 6 of 10 were wrong for more than 40 ms. Tried at 0, where
-# all were, 4, 12, and 18, which leaves some.
-SHIFT_MS = 12.0
+# all were, 4, 12, and 18, which leaves some. A bow that only begins to leave will turn: LEAVING is
+# the most of its weight that is left.
+SHIFT_MS, LEAVING = 12.0, 0.95
 SETTLING_MS = 35.0  # until a string has reached its pitch, and the ear has only that in its window
 
 
@@ -181,7 +182,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
 @compiled_exactly
 def shift_ms(p: Any, c: Any, string: int, slide_ms: float) -> float:
     """Time in which the finger slides to a note on a string; STEP_MS where the next one lands."""
-    is_off = c.target[SLOTS.bow_side] == 0.0
+    is_off = c.target[SLOTS.bow_side] == 0.0 and abs(c.value[SLOTS.bow_side]) < LEAVING
     if slide_ms >= 0.0 or string != p.string or not is_off or is_plucked(p) or is_touched(p):
         return slide_ms
     return SHIFT_MS

@@ -89,10 +89,10 @@ def test_channel_pressure_presses_the_fingers_of_its_channel(midi, listener):
     midi.touch(127)
     assert listener.press == HARDEST
     midi.off(75)
-    midi.on(77)
+    midi.on(75)
     assert listener.press == HARDEST
-    midi.off(77)
-    midi.on(77, channel=3)
+    midi.off(75)
+    midi.on(75, channel=3)
     assert listener.press == PRESS
 
 
@@ -103,8 +103,8 @@ def test_poly_pressure_presses_the_finger_of_its_own_note_only_and_ends_with_it(
     assert listener.press == PRESS
     midi.send("polytouch", note=77, value=127)
     assert listener.press == HARDEST
-    midi.off(77)
     midi.off(75)
+    midi.off(77)
     for note in (77, 79):
         midi.on(note)
         assert listener.press == PRESS

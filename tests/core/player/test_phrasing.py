@@ -40,29 +40,31 @@ def test_a_leap_from_a_long_note_slides():
     assert slide_s(1.0, 74, 79) > slide_s(0.5, 74, 79)
 
 
-def test_the_finger_slides_on_a_string_while_the_bow_is_off_and_else_the_next_one_steps():
+def test_a_light_finger_shifts_while_the_bow_is_off_and_else_the_next_one_steps():
     wrong = []
-    for note, rest_s, values, slides in (
+    for note, rest_s, values, shifts in (
         (78, 0.15, {}, True),
         (88, 0.15, {}, True),
+        (66, 0.15, {}, True),  # on the other string
         (78, 0.01, {}, True),  # the bow is still leaving
-        (78, 0.0, {}, False),  # the bow turns
-        (78, None, {}, False),  # legato
-        (66, 0.15, {}, False),  # on the other string
+        (86, 0.15, {}, False),  # the same again
+        (78, 0.0, {}, False),  # legato
         (78, 0.15, {"pizzicato": 1.0}, False),
     ):
         playing = Playing(variation=0.0, listening=0.0, phrasing=0.0, **values)
         playing.on(86)
         playing.play(0.3)
         before = int(playing.player["finger"])
-        if rest_s is not None:
+        if rest_s > 0.0:
             playing.off(86)
             playing.play(rest_s)
         playing.on(note)
         (moving,) = playing.play(0.03, "value")
-        slid = playing.player["finger"] == before
-        if slid != slides or (moving[-1, FINGER_PRESS] > 0.0).sum() != 1:
-            wrong.append((note, rest_s, values, moving[:, FINGER_PRESS]))
+        press = moving[:, FINGER_PRESS[before]]
+        is_light = press.min() < 0.5 and playing.player["finger"] == before
+        down = moving[-1, FINGER_PRESS]
+        if is_light != shifts or (down > 0.0).sum() != 1 or down.max() < 1.0:
+            wrong.append((note, rest_s, values, press))
     assert wrong == []
 
 

@@ -1,7 +1,8 @@
 """The left hand: four fingers that stop the strings, step, slide and press. Compiled.
 
 A step puts the next finger down while the one before still holds, and then lifts that, so that
-the string is never open in between. A slide moves the finger that is down.
+the string is never open in between. A slide moves the finger that is down. A shift is a slide of
+a light finger to another place, on either string, while the bow is off.
 """
 
 from typing import Any
@@ -15,8 +16,9 @@ from yehu_server.core.player.parameter_indices import (
     FINGER_POSITION,
     FINGER_PRESS,
     PLAYING,
+    SLOT_OF,
 )
-from yehu_server.core.player.phrasing import STEP_MS, varied_landing
+from yehu_server.core.player.phrasing import SHIFT, STEP_MS, varied_landing
 
 # Ramps of finger force. Chosen by trying landings of 1 to 5 ms and lifts of 3 to 25 ms on 24 steps
 # up and down both strings; half of these are within 10 cents of their pitch after 21 ms
@@ -27,6 +29,9 @@ MIN_STEP = 2e-3  # m
 SETTLING_MS = 8.0
 # A finger that lands while the bow changes strings: it stops both, and would strike the one left.
 CROSSING_LANDING_MS = 10.0
+# A finger bends both strings. Where its place changes under its full force, the one that is not
+# bowed rings: at a shift of 5 semitones in 12 ms as loud as the note (-21 dB), so at -40.
+SHIFTING_MS, SHIFT_N, EASING_MS = 15.0, 0.4, 3.0
 
 
 @compiled_exactly
@@ -41,13 +46,14 @@ def side_of(p: Any) -> float:
 def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide_ms: float) -> None:
     """Stop a string at a position (m, or OPEN) with at least the force (N) that the pitch needs.
 
-    The finger that is down slides there in a time; `phrasing.STEP_MS` for a step. On another string
-    it always steps.
+    The finger that is down slides there in a time; `phrasing.STEP_MS` for a step, `SHIFT` for a
+    shift. To another string it never slides under force, but steps.
     """
+    p.is_shifting = 0
     before = OPEN if p.string < 0 else p.position
     landing_ms = LANDING_MS
     if string != p.string:
-        slide_ms = STEP_MS
+        slide_ms = SHIFT if slide_ms == SHIFT else STEP_MS
         landing_ms = LANDING_MS if p.string < 0 else CROSSING_LANDING_MS
     p.string, p.position = string, position
     if OPEN in (position, before):
@@ -57,6 +63,9 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
         return
     if slide_ms < 0.0 and abs(position - before) < MIN_STEP:
         slide_ms = SETTLING_MS
+    if slide_ms == SHIFT:
+        shift(p, c, position, least_press)
+        return
     if slide_ms >= 0.0:
         move_parameter(p, c, FINGER_POSITION[p.finger], position, slide_ms)
         press(p, c, least_press, landing_ms)
@@ -66,6 +75,23 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
     for finger in range(FINGER_COUNT):  # all, since a direct write may have put others down
         if finger != p.finger:
             move_parameter(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)
+
+
+@compiled_exactly
+def shift(p: Any, c: Any, position: float, least_press: float) -> None:
+    """Slide the finger to a position (m) with little force; `end_shift` presses it there."""
+    p.is_shifting = 1
+    p.pressing = max(p.value[PLAYING.press], least_press)
+    move_parameter(p, c, FINGER_POSITION[p.finger], position, SHIFTING_MS)
+    move_parameter(p, c, FINGER_PRESS[p.finger], min(SHIFT_N, p.pressing), EASING_MS)
+
+
+@compiled_exactly
+def end_shift(p: Any, c: Any) -> None:
+    """Press a finger that has come to its place."""
+    if p.is_shifting != 0 and c.remaining[SLOT_OF[FINGER_POSITION[p.finger]]] == 0:
+        p.is_shifting = 0
+        move_parameter(p, c, FINGER_PRESS[p.finger], p.pressing, LANDING_MS)
 
 
 @compiled_exactly
@@ -86,7 +112,7 @@ def press(p: Any, c: Any, least_press: float, landing_ms: float) -> None:
 @compiled_exactly
 def lift_all(p: Any, c: Any) -> None:
     """Lift all fingers, also those that a direct write put down."""
-    p.string, p.position, p.pressing = -1, OPEN, 0.0
+    p.string, p.position, p.pressing, p.is_shifting = -1, OPEN, 0.0, 0
     for finger in range(FINGER_COUNT):
         take_back(p, FINGER_PRESS[finger])
         move_parameter(p, c, FINGER_PRESS[finger], 0.0, LIFTING_MS)

@@ -14,6 +14,7 @@ from yehu_server.core.player.articulating import articulate
 from yehu_server.core.player.bowing_by_ear import correct_pressure
 from yehu_server.core.player.drift import advance_drift, heard_semitones, vary_vibrato
 from yehu_server.core.player.ear import DELAY_FRAMES, EAR_SAMPLES, hear
+from yehu_server.core.player.left_hand import end_shift
 from yehu_server.core.player.notes import is_touched, note_pitch, reverse_bow_at_end
 from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.record import Player
@@ -63,5 +64,6 @@ def update_player(p: Player, c: Controls, sound: Any) -> None:
     advance_sway(p, c)
     vary_vibrato(p, c)
     articulate(p, c)
+    end_shift(p, c)
     reverse_bow_at_end(p, c)
     listen(p, c, carray(sound, (2 * EAR_SAMPLES,), np.float64))

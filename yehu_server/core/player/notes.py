@@ -37,6 +37,7 @@ from yehu_server.core.player.ownership import (
 from yehu_server.core.player.parameter_indices import BOW, OUTPUT, PLAYING, SMOOTH_MS
 from yehu_server.core.player.phrasing import (
     SCOOP_MS,
+    SHIFT,
     STEP_MS,
     hurry_of,
     scoop_of,
@@ -57,12 +58,11 @@ BEND_RAMP_MS = find("/playing/bend").smooth_ms
 DYNAMICS_EXPONENT = 1.5
 # A pitch bent farther than this from its key is not given a slide of its own.
 MAX_SEMITONES_FROM_KEY = 0.5
-# With the bow off, the finger slides to its next place on a string. Lifted, it would pluck the
-# string in front of the next finger, and the bow catch that with periods three times too long: of
-# leaps down to F5 to A5 after a rest, 6 of 10 were wrong for more than 40 ms. Tried at 0, where
-# all were, 4, 12, and 18, which leaves some. A bow that only begins to leave will turn: LEAVING is
-# the most of its weight that is left.
-SHIFT_MS, LEAVING = 12.0, 0.95
+# With the bow off, the finger shifts to its next place. Lifted, it would pluck the string in front
+# of the next finger, and the bow catch that with periods three times too long: of leaps down to F5
+# to A5 after a rest, 6 of 10 were wrong for more than 40 ms. A bow that only begins to leave will
+# turn: LEAVING is the most of its weight that is left.
+LEAVING = 0.95
 SETTLING_MS = 35.0  # until a string has reached its pitch, and the ear has only that in its window
 
 
@@ -161,7 +161,7 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
                 position = scooped(p, c, string, position, pitch - was)
                 pitch = p.finger_pitch
     crosses_strings = string != p.string
-    left_hand.stop(p, c, string, position, min_press(p, string), shift_ms(p, c, string, slide_ms))
+    left_hand.stop(p, c, string, position, min_press(p, string), step_or_shift(p, c, slide_ms))
     begin_tuning(p, pitch)
     begin_pressure_correction(p, pitch)
     pause_listening(p, c, max(slide_ms, SLURRED_MS if is_slur else attack_ms(p)))
@@ -180,12 +180,12 @@ def sound_last(p: Any, c: Any, is_legato: bool, at_once: bool) -> None:
 
 
 @compiled_exactly
-def shift_ms(p: Any, c: Any, string: int, slide_ms: float) -> float:
-    """Time in which the finger slides to a note on a string; STEP_MS where the next one lands."""
+def step_or_shift(p: Any, c: Any, slide_ms: float) -> float:
+    """SHIFT in place of a step where the bow is off, or leaves: the finger slides there unheard."""
     is_off = c.target[SLOTS.bow_side] == 0.0 and abs(c.value[SLOTS.bow_side]) < LEAVING
-    if slide_ms >= 0.0 or string != p.string or not is_off or is_plucked(p) or is_touched(p):
+    if slide_ms >= 0.0 or p.string < 0 or not is_off or is_plucked(p) or is_touched(p):
         return slide_ms
-    return SHIFT_MS
+    return SHIFT
 
 
 @compiled_exactly

@@ -74,7 +74,7 @@ USUAL_PHRASING = 0.5  # the default of files, for which sizes are that say nothi
 INNER = 0.4  # share of what bow force and place do on the inner string, whose pitch they move more
 # At full phrasing; by ear.
 SLIDE_MS, MIN_SLIDE_MS = 130.0, 45.0
-STEP_MS = -1.0  # in place of the time of a slide
+STEP_MS, SHIFT = -1.0, -2.0  # in place of the time of a slide: see ``left_hand``
 # A leap asks for a slide where it is so wide (semitones), from a note and to a note so long.
 MIN_LEAP, MAX_LEAP, LONG_S = 4.5, 9.5, 0.3
 

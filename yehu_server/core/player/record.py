@@ -65,6 +65,7 @@ PLAYER = np.dtype(
         ("finger_pitch", np.float64),  # the pitch that a finger last stopped
         ("finger", np.int64),  # which was put down last
         ("pressing", np.float64),  # N
+        ("is_shifting", np.int64),  # lightly, to where it will press so
         ("string", np.int64),  # of the fingering; -1: none yet
         ("position", np.float64),  # of the fingering (m), or OPEN
         # What it hears and corrects.

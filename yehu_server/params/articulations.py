@@ -202,12 +202,12 @@ ARTICULATIONS: tuple[Articulation, ...] = (
     ),
     Articulation(
         "trill", "颤音", "another finger beats a second above, faster and faster",
-        fingers=(FingerStep(2.0, at_ms=90.0), FingerStep(0.0, at_ms=160.0)),
+        fingers=(FingerStep(2.0, at_ms=90.0), FingerStep(0.0, at_ms=148.0)),
         repeat_ms=150.0, speed_up=0.03,
     ),
     Articulation(
         "wide-trill", "大颤音", "another finger beats a minor third above, faster and faster",
-        fingers=(FingerStep(3.0, at_ms=90.0), FingerStep(0.0, at_ms=160.0)),
+        fingers=(FingerStep(3.0, at_ms=90.0), FingerStep(0.0, at_ms=148.0)),
         repeat_ms=150.0, speed_up=0.03,
     ),
     Articulation(

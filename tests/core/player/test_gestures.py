@@ -216,6 +216,16 @@ def test_a_trill_beats_a_second_above_some_seven_times_a_second_and_a_mordent_on
     assert np.count_nonzero(np.diff(bends("mordent")) != 0.0) == 2
 
 
+def test_a_trill_is_its_note_for_longer_than_the_beats_however_quick_they_come_and_at_its_end():
+    for length in (0.0, 0.4, 0.9, 2.0):
+        is_up = bends("wide-trill", length or 3.0, note_length=length) > 0.0
+        turns = np.flatnonzero(np.diff(is_up)) + 1
+        spans = np.diff([0, *turns, is_up.size])
+        for beat, after in zip(spans[1::2], spans[2:-1:2], strict=False):
+            assert after >= beat, (length, spans)
+        assert length == 0.0 or not is_up[-1], (length, spans)
+
+
 def test_a_portamento_is_a_smooth_curve_that_lasts_its_time():
     playing = held("ordinary", 69, portamento=1.0, portamento_time=200.0)
     playing.play(0.3)

@@ -6,11 +6,13 @@ from yehu_server.compile.jit import compiled_exactly
 from yehu_server.core.player import gestures, notes, right_hand
 from yehu_server.core.player.ear import HOP_S
 from yehu_server.core.player.notes import BEND_RAMP_MS
+from yehu_server.core.player.parameter_indices import PLAYING
 from yehu_server.core.player.phrasing import STEP_MS
 from yehu_server.core.player.velocity import has_risen
 
 HOP_MS = 1e3 * HOP_S  # from one call of `articulate` to the next
 MIN_ROUND_FRACTION = 0.55  # of the time between rounds, at least: as quick as hands go
+HEARD_LAST_MS = 40.0  # of a trilled note after its last beat
 
 
 @compiled_exactly
@@ -34,17 +36,32 @@ def time_of(step: Any, time_factor: float, length: float) -> float:
 
 
 @compiled_exactly
+def pace_of(track: Any, row: int) -> float:
+    """Factor on the time of a round, as they come faster and faster."""
+    slower = 1.0 - gestures.SHAPES[row, gestures.SHORTENING] * track.times
+    return float(max(slower, MIN_ROUND_FRACTION))
+
+
+@compiled_exactly
 def begin_again(track: Any, row: int, count: int, now: float) -> None:
     """Begin a hand's steps once more, where all are done and they are to come again by now."""
     if gestures.SHAPES[row, gestures.REPEAT_MS] == 0.0 or not track.step >= count > 0:
         return
     if track.times + 1 >= gestures.SHAPES[row, gestures.MAX_ROUNDS]:
         return
-    sooner = max(1.0 - gestures.SHAPES[row, gestures.SHORTENING] * track.times, MIN_ROUND_FRACTION)
-    again = 1e-3 * gestures.SHAPES[row, gestures.REPEAT_MS] * sooner
+    again = 1e-3 * gestures.SHAPES[row, gestures.REPEAT_MS] * pace_of(track, row)
     if now >= track.begins + again:
         track.step, track.begins = 0, track.begins + again
         track.times += 1
+
+
+@compiled_exactly
+def has_time(p: Any, track: Any, row: int, now: float) -> bool:
+    """Whether a finger can beat once more, and the note itself then be heard before it ends."""
+    length = p.value[PLAYING.note_length]
+    last = max(gestures.FINGER_COUNT[row] - 1, 0)
+    round_ms = gestures.FINGER_STEPS[row, last, gestures.AT] + HEARD_LAST_MS
+    return bool(length == 0.0 or now + 1e-3 * round_ms * pace_of(track, row) <= length)
 
 
 @compiled_exactly
@@ -92,10 +109,12 @@ def move_finger(p: Any, c: Any, now: float, length: float) -> None:
     """Carry out the finger's steps that are due, and go on with its slide."""
     g = p.gesture
     count = gestures.FINGER_COUNT[g.row]
-    begin_again(g.finger, g.row, count, now)
+    if has_time(p, g.finger, g.row, now):
+        begin_again(g.finger, g.row, count, now)
+    pace = pace_of(g.finger, g.row)
     while g.finger.step < count:
         step = gestures.FINGER_STEPS[g.row, g.finger.step]
-        if now < g.finger.begins + time_of(step, g.time_factor, length):
+        if now < g.finger.begins + pace * time_of(step, g.time_factor, length):
             break
         g.finger.step += 1
         semitones = gestures.within_reach(p, step[gestures.SEMITONES])

@@ -32,6 +32,8 @@ CROSSING_LANDING_MS = 10.0
 # A finger bends both strings. Where its place changes under its full force, the one that is not
 # bowed rings: at a shift of 5 semitones in 12 ms as loud as the note (-21 dB), so at -40.
 SHIFTING_MS, SHIFT_N, EASING_MS = 15.0, 0.4, 3.0
+# A finger that is lifted for an open string while the bow is off: tried at 0.5 to 25 ms.
+OPENING_MS = 2.0
 
 
 @compiled_exactly
@@ -56,9 +58,11 @@ def stop(p: Any, c: Any, string: int, position: float, least_press: float, slide
         slide_ms = SHIFT if slide_ms == SHIFT else STEP_MS
         landing_ms = LANDING_MS if p.string < 0 else CROSSING_LANDING_MS
     p.string, p.position = string, position
-    if OPEN in (position, before):
-        if position != OPEN:
-            land(p, c, position)
+    if position == OPEN:
+        press(p, c, least_press, OPENING_MS if slide_ms == SHIFT else LIFTING_MS)
+        return
+    if before == OPEN:
+        land(p, c, position)
         press(p, c, least_press, landing_ms)
         return
     if slide_ms < 0.0 and abs(position - before) < MIN_STEP:
@@ -95,17 +99,15 @@ def end_shift(p: Any, c: Any) -> None:
 
 
 @compiled_exactly
-def press(p: Any, c: Any, least_press: float, landing_ms: float) -> None:
-    """Set the requested finger force, or lift the finger where the string is open."""
+def press(p: Any, c: Any, least_press: float, moving_ms: float) -> None:
+    """Set the requested finger force in a time (ms), or lift the finger from an open string."""
     force = 0.0
     if p.string >= 0 and p.position != OPEN:
         force = max(p.value[PLAYING.press], least_press) if p.gesture.node == NONE else TOUCH_N
     if force != p.pressing or force > 0.0:
         if p.pressing == 0.0:
-            landing_ms = varied_landing(p, landing_ms)
-        move_parameter(
-            p, c, FINGER_PRESS[p.finger], force, landing_ms if force > 0.0 else LIFTING_MS
-        )
+            moving_ms = varied_landing(p, moving_ms)
+        move_parameter(p, c, FINGER_PRESS[p.finger], force, moving_ms)
     p.pressing = force
 
 

@@ -91,14 +91,14 @@ def test_what_was_set_is_reported_until_it_is_reached_and_then_what_became_of_it
     assert live.value("/bow/speed") == instrument.target("/bow/speed") != 0.11
 
 
-def test_of_mappings_that_come_at_once_the_last_is_used_and_nobody_waits(live, instrument):
+def test_of_mappings_that_come_at_once_the_last_is_used_and_nobody_waits(
+    live, instrument, monkeypatch
+):
     mappings = [Mapping(f"{n}", (Bind(f"cc {n}", VOLUME),)) for n in range(20, 25)]
-    took = []
-    for mapping in mappings:  # more than the audio side can have waiting
-        began = time.monotonic()
-        live.remap(mapping, frame=1000)
-        took.append(time.monotonic() - began)
-    assert sorted(took)[2] < 0.1  # of five; a busy machine holds some up
+    with monkeypatch.context() as patch:
+        patch.setattr(time, "sleep", lambda _seconds: pytest.fail("it waits"))
+        for mapping in mappings:  # more than the audio side can have waiting
+            live.remap(mapping, frame=1000)
     for _ in range(2):
         run(instrument, 2400)
         live.finish_remap()

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from yehu_server.core.physics import elementary
+from yehu_server.core.physics import elementary, fixed_power
 from yehu_server.core.physics.elementary import (
     SERIES_BELOW,
     kernel_exp2,
@@ -108,6 +108,12 @@ def tables(factor, exponent):
     made = np.zeros(1, TABLES)
     prepare_power(made[0], factor, exponent)
     return made[0]
+
+
+def test_tables_are_made_once_for_an_exponent(monkeypatch):
+    tables(3.0, 0.7)
+    monkeypatch.setattr(fixed_power, "elementwise", None)
+    tables(1.0, 0.7)
 
 
 @pytest.mark.parametrize("exponent", [0.0005, 0.5, 0.65, 1.0, 1.37, 2.0])

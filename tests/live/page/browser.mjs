@@ -20,6 +20,9 @@ const FLAGS = [
   `--host-resolver-rules=MAP ${UNTRUSTED} 127.0.0.1`,
 ];
 
+/** How long what is waited for may take on a busy machine, ms: 30 s ran out on one. */
+export const PATIENCE = 120_000;
+
 /** What a browser calls requests that it drops itself, such as an icon's when the page is left. */
 const ABORTED = "net::ERR_ABORTED";
 
@@ -41,6 +44,7 @@ export const SIZES = {
 export const launch = (program, flags = [], environment = {}) =>
   chromium.launch({
     executablePath: program,
+    timeout: PATIENCE,
     args: [...FLAGS, ...flags],
     env: { ...process.env, ...environment },
   });
@@ -49,8 +53,15 @@ export const launch = (program, flags = [], environment = {}) =>
  * A context that remembers nothing.
  * @param {import("playwright-core").Browser} browser
  */
-export const contextOf = (browser) =>
-  browser.newContext({ viewport: SIZES.desk, hasTouch: true, locale: "en-GB" });
+export async function contextOf(browser) {
+  const context = await browser.newContext({
+    viewport: SIZES.desk,
+    hasTouch: true,
+    locale: "en-GB",
+  });
+  context.setDefaultTimeout(PATIENCE);
+  return context;
+}
 
 /** Draws ten times a second instead of sixty, which would take most of a processor; runs in the page. */
 export function drawSeldom() {
@@ -81,6 +92,14 @@ export async function open(browser, url) {
   await page.waitForSelector(READY);
   return { page, errors };
 }
+
+/**
+ * Let time pass on the page: its own timers that end before have run, however busy the machine is.
+ * @param {import("playwright-core").Page} page
+ * @param {number} ms
+ */
+export const pass = (page, ms) =>
+  page.evaluate((time) => new Promise((resolve) => setTimeout(resolve, time)), ms);
 
 /** Stands for a browser with one MIDI keyboard; runs in the page. */
 export function pretendMidi() {

@@ -3,7 +3,7 @@
  * diagram on a narrow phone.
  */
 
-import { READY, SIZES, fingersOf, open, commands } from "./browser.mjs";
+import { READY, SIZES, commands, fingersOf, open, pass } from "./browser.mjs";
 
 const SECOND = 1000;
 
@@ -23,7 +23,7 @@ function countDrawings() {
  */
 async function perSecond(page) {
   await page.evaluate(() => (globalThis.drawn = {}));
-  await page.waitForTimeout(SECOND);
+  await pass(page, SECOND);
   return page.evaluate(() => globalThis.drawn);
 }
 
@@ -71,7 +71,7 @@ async function bowMoves(page) {
       return part.toDataURL();
     });
   const first = await picture();
-  await page.waitForTimeout(SECOND);
+  await pass(page, SECOND);
   return first !== (await picture());
 }
 
@@ -89,7 +89,7 @@ async function visit(browser, url, reducedMotion) {
   const found = { pressed: await pressed(page), transition: await longestTransition(page) };
   const silent = new Map(await shown(page));
   await page.keyboard.down("KeyC");
-  await page.waitForTimeout(900);
+  await pass(page, 900);
   const sounding = await shown(page);
   found.changed = sounding.filter(([id, image]) => image !== silent.get(id)).map(([id]) => id);
   found.drawn = await perSecond(page);
@@ -120,7 +120,7 @@ async function drag(browser, url) {
   await page.locator("#schelleng").scrollIntoViewIfNeeded();
   for (const name of ["silent", "sounding"]) {
     if (name === "sounding") await page.keyboard.down("KeyC");
-    await page.waitForTimeout(500);
+    await pass(page, 500);
     await commands(page);
     await page.evaluate(() => {
       globalThis.taken = false;
@@ -134,10 +134,10 @@ async function drag(browser, url) {
     await touch("touchStart", at(0));
     for (let step = 1; step <= 10; step++) {
       await touch("touchMove", at(step / 10));
-      await page.waitForTimeout(20);
+      await pass(page, 20);
     }
     await touch("touchEnd", []);
-    await page.waitForTimeout(300);
+    await pass(page, 300);
     found[name] = {
       taken: await page.evaluate(() => globalThis.taken), // by the browser, to scroll
       commands: await commands(page),

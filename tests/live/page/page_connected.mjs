@@ -1,6 +1,6 @@
 /** Uses the page of a server: there, listening, here, and while the server is away. */
 
-import { fingersOf, keepAnalysers, open } from "./browser.mjs";
+import { fingersOf, keepAnalysers, open, pass } from "./browser.mjs";
 
 const STEADY_MS = 2000;
 const PATIENCE_MS = 40_000;
@@ -81,7 +81,7 @@ async function isHeardSteadily(page) {
   const gaps = async () => /last minute: (\d+)/.exec(await panel.textContent())[1];
   let [before, since] = [await gaps(), Date.now()];
   for (const end = Date.now() + PATIENCE_MS; Date.now() < end;) {
-    await page.waitForTimeout(100);
+    await pass(page, 100);
     const now = await gaps();
     if (now !== before) [before, since] = [now, Date.now()];
     else if (Date.now() - since > STEADY_MS) return true;

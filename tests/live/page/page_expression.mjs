@@ -3,7 +3,7 @@
  * a network.
  */
 
-import { fingersOf, keepAnalysers, open } from "./browser.mjs";
+import { fingersOf, keepAnalysers, open, pass } from "./browser.mjs";
 
 const SHARES = [0.03, 0.35, 0.65, 0.97];
 const PITCHES = [67, 74, 81];
@@ -61,10 +61,10 @@ async function dynamics(page) {
       found[name][pitch] = [];
       for (const share of SHARES) {
         await down(pitch, share);
-        await page.waitForTimeout(SETTLES_MS);
+        await pass(page, SETTLES_MS);
         found[name][pitch].push(await page.evaluate(level));
         await up(pitch);
-        await page.waitForTimeout(200);
+        await pass(page, 200);
       }
     }
   }
@@ -88,7 +88,7 @@ export const isDrawnInFull = true;
 export default async function (browser, url) {
   await browser.addInitScript(keepAnalysers);
   const { page, errors } = await open(browser, url);
-  await page.waitForTimeout(1500);
+  await pass(page, 1500);
   const found = {};
   const board = await page.locator("#fingerboard").boundingBox();
   await page.mouse.move(board.x + board.width / 2, board.y + board.height / 3);
@@ -114,7 +114,7 @@ export default async function (browser, url) {
   await page.mouse.down();
   found.firstMs = await heard;
   page.off("request", asked);
-  await page.waitForTimeout(500);
+  await pass(page, 500);
   found.playing = await load(browser, 3);
   await page.mouse.up();
   found.dynamics = await dynamics(page);
@@ -127,13 +127,13 @@ export default async function (browser, url) {
       return clearRect.apply(this, box);
     };
   });
-  await page.waitForTimeout(ASLEEP_MS);
+  await pass(page, ASLEEP_MS);
   await page.evaluate(() => (globalThis.drawn = 0));
   found.resting = await load(browser, 4);
   found.drawnAtRest = await page.evaluate(() => globalThis.drawn);
   found.state = await page.evaluate(() => globalThis.analysers.at(-1).context.state);
   await page.keyboard.down("KeyV");
-  await page.waitForTimeout(1000);
+  await pass(page, 1000);
   found.awake = await page.evaluate(level);
   await page.keyboard.up("KeyV");
 
@@ -143,7 +143,7 @@ export default async function (browser, url) {
   const { page: alone, errors: others } = await open(browser, url);
   await alone.click("#start");
   await alone.keyboard.down("KeyV");
-  await alone.waitForTimeout(1500);
+  await pass(alone, 1500);
   found.offline = await alone.evaluate(level);
   found.language = await alone.evaluate(
     async () => (await (await fetch("/texts/zh.json")).json()).title,

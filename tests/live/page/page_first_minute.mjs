@@ -1,6 +1,6 @@
 /** Plays the first minute: an invitation, three gestures; keeps a performance as a link, and opens it. */
 
-import { drawn, fingersOf, held, open, requested, commands } from "./browser.mjs";
+import { commands, drawn, fingersOf, held, open, pass, requested } from "./browser.mjs";
 
 const SIZES = [
   [1920, 1080],
@@ -83,7 +83,7 @@ export default async function (browser, url) {
   const elapsed = () => (Date.now() - began) / 1000;
   while (elapsed() < 1 || (elapsed() < 10 && (await words())[0] === before)) {
     await touch("touchMove", [finger(0.4 + 0.006 * Math.sin(2 * Math.PI * 6 * elapsed()))]);
-    await page.waitForTimeout(20);
+    await pass(page, 20);
   }
   found.rocked = await commands(page);
   await touch("touchEnd", []);
@@ -94,7 +94,7 @@ export default async function (browser, url) {
     await touch("touchStart", [at(0.2)]);
     for (let step = 0; step < 40; step++) {
       await touch("touchMove", [at(0.2 + 0.015 * step)]);
-      await page.waitForTimeout(20);
+      await pass(page, 20);
     }
     await touch("touchEnd", []);
     if (await page.locator("#guide .live").isVisible()) break;
@@ -107,7 +107,7 @@ export default async function (browser, url) {
     // Down and up again: it says "scratch" as soon as it has heard the bow.
     const down = 240 * Math.abs(((step / 20 + 1) % 2) - 1);
     await touch("touchMove", [{ x: bow.x + bow.width * 0.98, y: bow.y + 40 + down, id: 2 }]);
-    await page.waitForTimeout(20);
+    await pass(page, 20);
     found.pressed = await tone.getAttribute("data-tone");
   }
   await touch("touchEnd", []);
@@ -123,9 +123,9 @@ export default async function (browser, url) {
   await page.keyboard.press("KeyX", { delay: 200 });
   await touch("touchStart", [finger(0.5)]);
   for (let step = 1; step <= 10; step++) await touch("touchMove", [finger(0.5 + step * 0.01)]);
-  await page.waitForTimeout(1500); // a busy machine has to catch the note while it sounds, below
+  await pass(page, 1500); // a busy machine has to catch the note while it sounds, below
   await touch("touchEnd", []);
-  await page.waitForTimeout(100);
+  await pass(page, 100);
   found.played = await commands(page);
   await page.getByRole("button", { name: "Record", exact: true }).click();
   const on = page.locator("#panel-keep .row:has([aria-pressed=true])");
@@ -193,11 +193,11 @@ export default async function (browser, url) {
   });
   const { x, y, width, height } = await third.locator("#fingerboard").boundingBox();
   await hand("touchStart", [{ x: x + 0.8 * width, y: y + height / 2, id: 1 }]);
-  await third.waitForTimeout(2500); // longer than what was kept
+  await pass(third, 2500); // longer than what was kept
   found.taken = { held: await held(third), commands: await commands(third) };
   found.taken.offered = await third.locator("#listen").textContent();
   await hand("touchEnd", []);
-  await third.waitForTimeout(100);
+  await pass(third, 100);
   found.let = await held(third);
   found.errors = [...errors, ...others];
   return found;

@@ -1,6 +1,6 @@
 /** Plays the page with fingers, mouse and keys; prints the commands that followed. */
 
-import { fingersOf, held, open, commands } from "./browser.mjs";
+import { commands, fingersOf, held, open, pass } from "./browser.mjs";
 
 /** @param {import("playwright-core").Locator} locator */
 async function boxOf(locator) {
@@ -69,7 +69,7 @@ export default async function (browser, url) {
     await touch("touchMove", [{ x: placeOf(72), y: board.y + share * board.height, id: 0 }]);
   }
   await touch("touchEnd", []);
-  await page.waitForTimeout(800);
+  await pass(page, 800);
   found.swelled = await commands(page);
 
   // The bow, drawn across the strings and back while a finger stops the string.
@@ -80,15 +80,15 @@ export default async function (browser, url) {
   await touch("touchStart", [at(0.2), stopping]);
   for (let step = 0; step <= 10; step++) {
     await touch("touchMove", [at(0.2 + step * 0.03), stopping]);
-    await page.waitForTimeout(20);
+    await pass(page, 20);
   }
   found.drawnForth = await commands(page);
   for (let step = 10; step >= 0; step--) {
     await touch("touchMove", [at(0.2 + step * 0.03), stopping]);
-    await page.waitForTimeout(20);
+    await pass(page, 20);
   }
   found.drawnBack = await commands(page);
-  await page.waitForTimeout(250);
+  await pass(page, 250);
   found.rested = await commands(page);
   await touch("touchEnd", [stopping]);
   await touch("touchEnd", []);

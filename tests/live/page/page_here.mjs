@@ -1,11 +1,11 @@
 /** Chooses to sound here, of the page of a server that others have set. */
 
-import { fingersOf, open } from "./browser.mjs";
+import { fingersOf, open, pass } from "./browser.mjs";
 
 /** The value that the page shows. @param {import("playwright-core").Page} page @param {string} address */
 async function shown(page, address) {
   await page.click("#tab-all");
-  await page.waitForTimeout(1000); // it is refreshed a few times a second
+  await pass(page, 1000); // it is refreshed a few times a second
   const value = await page.evaluate((address) => {
     const rows = [...document.querySelectorAll("#panel-all .parameter")];
     const row = rows.find((one) => one.querySelector("code").textContent === address);
@@ -26,13 +26,13 @@ export default async function (browser, url, { reach }) {
   /** @param {string} when @param {string} way */
   const here = async (when, way = "here") => {
     await reach(`before ${when}`);
-    await page.waitForTimeout(100); // a page sees what others set some milliseconds later
+    await pass(page, 100); // a page sees what others set some milliseconds later
     await page.click(`#way-${way}`);
     await page.waitForFunction(
       (where) => document.querySelector("#panel-connect").textContent.includes(where),
       way === "here" ? "AudioWorklet" : "the server’s sound",
     );
-    await page.waitForTimeout(500);
+    await pass(page, 500);
     await reach(`chosen ${when}`);
     found[when] = await shown(page, "/playing/bow_position");
     await touch("touchStart", [finger]);

@@ -1,6 +1,6 @@
 /** Changes the page's language while it sounds; prints what was said before, after, and after loading it anew. */
 
-import { READY, held, open, pretendMidi, sendMidi } from "./browser.mjs";
+import { READY, held, open, pass, pretendMidi, sendMidi } from "./browser.mjs";
 
 /** All that the page says, by element, without the numbers that move; runs in the page. */
 function said() {
@@ -23,14 +23,14 @@ export default async function (browser, url) {
     await page.waitForFunction(() => globalThis.imitation);
     await page.click("#tab-see");
     await page.keyboard.down("KeyC");
-    await page.waitForTimeout(400);
+    await pass(page, 400);
   };
   const end = async () => {
     await page.keyboard.up("KeyC");
     await page.click("#tab-connect"); // which shows the status only while it is shown
-    await page.waitForTimeout(600);
+    await pass(page, 600);
     await page.click("#tab-see");
-    await page.waitForTimeout(400);
+    await pass(page, 400);
     return page.evaluate(said);
   };
   await use();
@@ -43,7 +43,7 @@ export default async function (browser, url) {
   await page.click("#tab-see");
   await page.keyboard.up("KeyC");
   await page.keyboard.down("KeyC"); // the field has ended the note
-  await page.waitForTimeout(300);
+  await pass(page, 300);
   found.before = await page.evaluate(said);
 
   await page.evaluate(() => (globalThis.stays = true));

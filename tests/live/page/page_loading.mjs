@@ -1,6 +1,6 @@
 /** Opens the page while a server prepares the instrument, and where there is none; prints what it says. */
 
-import { READY, held, open } from "./browser.mjs";
+import { READY, held, open, pass } from "./browser.mjs";
 
 const WASM = "**/yehu.wasm";
 const TEXT = "text/plain; charset=utf-8";
@@ -17,7 +17,7 @@ async function plays(page) {
   await page.click("#start");
   await page.waitForFunction(() => globalThis.imitation);
   await page.keyboard.down(KEY);
-  await page.waitForTimeout(300);
+  await pass(page, 300);
   const isHeld = (await held(page)) === 1;
   await page.keyboard.up(KEY);
   return isHeld;

@@ -5,7 +5,7 @@
  */
 
 import { constants, openSync, writeSync } from "node:fs";
-import { commands, open } from "./browser.mjs";
+import { commands, open, pass } from "./browser.mjs";
 
 export const hasTabs = true;
 export const environment = ([library, fifo]) => ({ LD_PRELOAD: library, YEHU_MIDI_PORTS: fifo });
@@ -36,7 +36,7 @@ export default async function (browser, url, { words: [, fifo] }) {
     heard.length = 0;
     for (let i = 0; i < PATIENCE && !isEnough(heard); i++) {
       heard.push(...(await commands(page)).filter(([kind]) => KINDS.includes(kind)));
-      await page.waitForTimeout(BETWEEN_MS);
+      await pass(page, BETWEEN_MS);
     }
     return heard.map(([kind]) => kind);
   };

@@ -1,6 +1,6 @@
 /** Pages that play several parts of one server. */
 
-import { fingersOf, open } from "./browser.mjs";
+import { fingersOf, open, pass } from "./browser.mjs";
 
 /**
  * What the page shows of its part.
@@ -8,7 +8,7 @@ import { fingersOf, open } from "./browser.mjs";
  */
 async function shown(page) {
   await page.waitForSelector("#status[data-state=on]", { state: "attached" });
-  await page.waitForTimeout(200);
+  await pass(page, 200);
   return page.evaluate(() => {
     const select = document.querySelector("#part");
     return {

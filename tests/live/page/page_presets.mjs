@@ -1,11 +1,11 @@
 /** Looks at which sound the page says it has, beside what its parameters are. */
 
-import { READY, SIZES, drawn, open, requested } from "./browser.mjs";
+import { READY, SIZES, drawn, open, pass, requested } from "./browser.mjs";
 
 /** The presets that are shown as chosen, or as changed. @param {import("playwright-core").Page} page */
 async function chosen(page) {
   if (await page.isHidden("#panel-sound")) await page.click("#tab-sound");
-  await page.waitForTimeout(400); // some looks at the parameters
+  await pass(page, 400); // some looks at the parameters
   const found = await page.locator("#panel-sound .cards > button").evaluateAll((cards) =>
     cards
       .map((card) => [card.ariaPressed, card.querySelector("span").textContent])

@@ -1,6 +1,6 @@
 /** Presses buttons that begin something, and again before it has begun; prints what was begun and ended. */
 
-import { open } from "./browser.mjs";
+import { open, pass } from "./browser.mjs";
 
 /** What has been begun and ended since the last call. @param {import("playwright-core").Page} page */
 const done = (page) => page.evaluate(() => globalThis.done.splice(0));
@@ -30,7 +30,7 @@ export default async function (browser, url) {
   }
   opened();
   await page.waitForFunction(() => globalThis.imitation);
-  await page.waitForTimeout(100);
+  await pass(page, 100);
   found.twice = { done: await done(page), pressed: await pressed() };
   await record.click();
   found.once = { done: await done(page), pressed: await pressed() };
@@ -47,10 +47,10 @@ export default async function (browser, url) {
   const isOn = () => hum.getAttribute("aria-pressed");
   for (let times = 0; times < 4; times++) await hum.click(); // while the browser asks
   await page.evaluate(() => globalThis.agree());
-  await page.waitForTimeout(100);
+  await pass(page, 100);
   found.asked = { done: await done(page), isOn: await isOn() };
   await hum.click();
-  await page.waitForTimeout(100);
+  await pass(page, 100);
   found.hums = { done: await done(page), isOn: await isOn() };
   found.errors = errors;
   return found;

@@ -6,17 +6,16 @@
  * nothing else.
  */
 
-import { UNTRUSTED, keepAnalysers, open } from "./browser.mjs";
+import { UNTRUSTED, keepAnalysers, open, pass } from "./browser.mjs";
 
 const KEY = "KeyV"; // B4
 const DEPRECATED = "ScriptProcessorNode is deprecated"; // but there is nothing else there
 
 /**
- * Start the sound by a key; return after how long (ms) it is heard.
+ * Start the sound by a key; wait until it is heard.
  * @param {import("playwright-core").Page} page
  */
 async function start(page) {
-  const began = Date.now();
   await page.click("#start");
   await page.keyboard.down(KEY);
   await page.waitForFunction(() => {
@@ -25,7 +24,6 @@ async function start(page) {
     analyser?.getFloatTimeDomainData(samples);
     return samples.some((sample) => Math.abs(sample) > 0.01);
   });
-  return Date.now() - began;
 }
 
 /**
@@ -46,10 +44,10 @@ async function playAndKeep(page, folder) {
   await page.getByRole("button", { name: "Record", exact: true }).click();
   await page.getByRole("button", { name: "Keep", exact: true }).click();
   await page.keyboard.down(KEY);
-  await page.waitForTimeout(1000);
+  await pass(page, 1000);
   const status = await page.getAttribute("#status", "data-state");
   await page.keyboard.up(KEY);
-  await page.waitForTimeout(300);
+  await pass(page, 300);
   const pressed = page.locator("#panel-keep button[aria-pressed=true]");
   await pressed.first().click();
   await save(page, page.getByRole("button", { name: "Save as a file" }), `${folder}/kept.jsonl`);
@@ -64,12 +62,13 @@ export default async function (browser, url, { words: [folder, tune] }) {
     if (request.url().endsWith("yehu.wasm") && !request.serviceWorker()) asked += 1;
   });
   const { page, errors } = await open(browser, url);
-  const found = { seconds: (await start(page)) / 1e3, asked };
+  await start(page);
+  const found = { asked };
   await page.keyboard.up(KEY);
   if (tune) {
     await page.click("#tab-tunes");
     await page.getByRole("button", { name: `Listen: ${tune}` }).click();
-    await page.waitForTimeout(5000);
+    await pass(page, 5000);
     const stop = page.locator("#panel-tunes").getByRole("button", { name: `Stop: ${tune}` });
     found.pressed = await stop.getAttribute("aria-pressed");
     await page.waitForFunction(
@@ -87,7 +86,7 @@ export default async function (browser, url, { words: [folder, tune] }) {
   await untrusted.page.click("#tab-keep");
   await untrusted.page.getByRole("button", { name: "Record", exact: true }).click();
   await untrusted.page.keyboard.down(KEY);
-  await untrusted.page.waitForTimeout(1000);
+  await pass(untrusted.page, 1000);
   const pressed = untrusted.page.locator("#panel-keep button[aria-pressed=true]");
   await save(untrusted.page, pressed.first(), `${folder}/script.wav`);
   const others = untrusted.errors.filter((error) => !error.includes(DEPRECATED));

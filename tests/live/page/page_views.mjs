@@ -1,6 +1,16 @@
 /** Checks the page in every size, theme and language; prints what it finds. */
 
-import { READY, SIZES, drawn, held, open, pretendMidi, requested, commands } from "./browser.mjs";
+import {
+  READY,
+  SIZES,
+  commands,
+  drawn,
+  held,
+  open,
+  pass,
+  pretendMidi,
+  requested,
+} from "./browser.mjs";
 
 /** Elements that a finger should be able to touch, and their sizes. */
 const TARGETS = "button:not([hidden]), select, input, summary, canvas[tabindex]";
@@ -78,7 +88,7 @@ export default async function (browser, url) {
   found.status = [];
   for (const loadPercent of [3, 85]) {
     await page.evaluate((load) => (globalThis.imitation.status.loadPercent = load), loadPercent);
-    await page.waitForTimeout(600);
+    await pass(page, 600);
     found.status.push(await page.textContent("#status"));
   }
 

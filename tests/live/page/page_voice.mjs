@@ -4,7 +4,7 @@
  * Words: that file, and a folder for what is kept.
  */
 
-import { open } from "./browser.mjs";
+import { open, pass } from "./browser.mjs";
 
 /** What makes of a file a microphone. @param {string[]} words */
 export const flags = ([hum]) => [
@@ -23,7 +23,7 @@ export default async function (browser, url, { words: [, folder] }) {
   await page.getByRole("button", { name: "Use the microphone" }).click();
   const word = page.getByText("Wear headphones");
   await word.waitFor();
-  await page.waitForTimeout(3000);
+  await pass(page, 3000);
   await page.locator("#panel-connect canvas").scrollIntoViewIfNeeded();
   // Pixels of the reddish band and of the bluish line; all else is nearly grey.
   const pixels = await page.locator("#panel-connect canvas").evaluate((canvas) => {

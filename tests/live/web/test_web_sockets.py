@@ -257,7 +257,7 @@ def test_the_end_of_the_server_is_reported_and_soon(make_live):
     webs[0].sync()
     began = time.monotonic()
     live.server.web.stop()
-    assert time.monotonic() - began < 10.0  # aiohttp itself would wait for a minute
+    assert time.monotonic() - began < 40.0  # aiohttp itself would wait for a minute
     for web in webs:
         with pytest.raises(ConnectionError, match="1001"):
             web.next()

@@ -6,6 +6,8 @@ of one, part = midpoint (1 + t) with a t so small that a few terms of the binomi
     factor x^p = factor 2^(p e) midpoint^p (1 + p t + p (p - 1)/2 t^2 + ...).
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from yehu_server.compile.jit import compiled
@@ -35,6 +37,17 @@ TABLES = np.dtype(
 
 def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
     """Write the tables by which `power` finds `factor` x^`exponent` (0 to 2)."""
+    made = tables_of(exponent)
+    for name in TABLES.names or ():
+        tables[name] = made[name][0]
+    tables["of_exponent"] *= factor
+
+
+@lru_cache(maxsize=16)
+def tables_of(exponent: float) -> np.ndarray:
+    """Return the tables of x^`exponent` [shape=(1,)]: most of the time that an instrument takes."""
+    made = np.zeros(1, TABLES)
+    tables = made[0]
     twos = np.arange(-EXTREME_EXPONENT, EXTREME_EXPONENT + 1)
     coarse = float(np.float32(exponent))  # a product with this is not rounded
     of_exponent = elementwise(exp2, coarse * twos) * elementwise(exp2, (exponent - coarse) * twos)
@@ -42,7 +55,7 @@ def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
         np.clip(np.arange(EXPONENT_COUNT) - EXPONENT_OF_1, -EXTREME_EXPONENT, EXTREME_EXPONENT)
         + EXTREME_EXPONENT
     )
-    tables["of_exponent"] = factor * of_exponent[known]
+    tables["of_exponent"] = of_exponent[known]
     per_midpoint = 1.0 / (1.0 + (np.arange(INTERVALS) + 0.5) / INTERVALS)
     tables["per_midpoint"] = per_midpoint
     tables["of_midpoint"] = [power_of(x, -exponent) for x in per_midpoint.tolist()]
@@ -50,6 +63,7 @@ def prepare_power(tables: np.void, factor: float, exponent: float) -> None:
     for n in range(TERMS):
         term *= (exponent - n) / (n + 1.0)
         tables["series"][n] = term
+    return made
 
 
 @compiled

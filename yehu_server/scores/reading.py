@@ -14,11 +14,12 @@ from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import section_size
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
 from yehu_server.scores.events import NoteColumns, uncollected
-from yehu_server.scores.key_switches import with_key_switches, without_low_keys
+from yehu_server.scores.key_switches import with_key_switches, with_low_keys_told, without_low_keys
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import (
     MAX_DURATION_H,
@@ -122,6 +123,7 @@ class ReadOptions:
     in_range: bool = True  # whether parts are moved by octaves as a whole, to fit the instrument
     leaves_low_keys: bool = False  # whether keys far below a tune of a MIDI file are left out
     is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
+    is_section: bool = False  # whether several players share the notes of chords
     within: NoteRange = YEHU  # the notes of the instrument
     channels: Collection[int] | None = None  # of a MIDI file that are played: all but percussion
     key_switches: int | None = None  # of a MIDI file: see `Mapping`
@@ -137,6 +139,7 @@ class ReadOptions:
             in_range=playing.policy is not RangePolicy.CLAMP and playing.tuning.has_octaves,
             leaves_low_keys=playing.policy is RangePolicy.SKIP,
             is_mpe=playing.mapping.mpe,
+            is_section=section_size(playing) > 1,
             # In the keys of the score, which the tuning transposes.
             within=range_of(playing.quantities).transposed(-playing.tuning.transposed_by),
             channels=playing.channels,
@@ -211,8 +214,9 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
     played = chosen_parts.MELODIC if options.channels is None else options.channels
     played = range(16) if is_mpe else {*chosen_parts.MELODIC, *played}
     score = with_key_switches(score, options.key_switches, played)
-    if options.leaves_low_keys and not is_mpe:
-        score = without_low_keys(score, played, options.within)
+    if not is_mpe:
+        treated = without_low_keys if options.leaves_low_keys else with_low_keys_told
+        score = treated(score, played, options.within)
     tune = score if is_mpe else chosen_parts.default_midi_part(score)
     delays = midi_delays(score, tune)
     if options.parts:
@@ -224,9 +228,13 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
         line = "has controllers and no note: nothing sounds"
         score = replace(score, remarks=(*score.remarks, line))
     elif options.in_range:
-        channels = range(16) if is_mpe else options.channels
-        within = options.within
-        score = chosen_parts.midi_in_range(score, channels, is_mpe=is_mpe, within=within)
+        score = chosen_parts.midi_in_range(
+            score,
+            range(16) if is_mpe else options.channels,
+            is_mpe=is_mpe,
+            is_section=options.is_section,
+            within=options.within,
+        )
     return replace(score, delays=delays)
 
 

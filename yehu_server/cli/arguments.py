@@ -6,7 +6,8 @@ import argparse
 import contextlib
 import inspect
 import re
-from collections.abc import Callable, Collection
+from collections import Counter
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -149,6 +150,8 @@ class Parser(argparse.ArgumentParser):
         action = self._actions_by_word.get(args[0]) if args else None
         if action is not None:
             return action.parse_known_args(args[1:], namespace)
+        if namespace is None:  # else once more, beside a config file
+            self._warn_of_repeated(args or ())
         known: tuple[argparse.Namespace, list[str]] = super().parse_known_args(args, namespace)
         if known[1]:
             word = known[1][0].partition("=")[0]
@@ -156,6 +159,14 @@ class Parser(argparse.ArgumentParser):
             near = self._near(word)
             self.error(f"no option {word}{near}" if is_option else f"{word}: one argument too many")
         return known
+
+    def _warn_of_repeated(self, words: Sequence[str]) -> None:
+        """Warn of options that have one value, and are given several."""
+        given = Counter(word.partition("=")[0] for word in words)
+        for option, count in given.items():
+            action = self.options.get(option)
+            if count > 1 and action and action.nargs != 0 and action.default != []:
+                warn(f"{option} is given {count} times: the last counts")
 
     def _near(self, option: str) -> str:
         """A hint at an option, or at the parameter of that name where one can be set."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -110,6 +111,7 @@ READERS = {  # but for ABC, which has several songs
     "musescore": "yehu_server.scores.musicxml.musescore:read_musescore",
     "musicxml": "yehu_server.scores.musicxml.reader:read_musicxml",
 }
+ABC_BEGINS = re.compile(rb"^(\xef\xbb\xbf)?(X: *\d|%abc)", re.MULTILINE)
 BYTE_ORDER_MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 
 
@@ -243,7 +245,7 @@ def read_written(path: Path, song: int | None = None) -> Written:
 
     Raises ScoreError, one line naming the file, where it cannot be read or is none of these.
     """
-    form = _format_of(path)
+    form = format_of(path)
     if song not in (None, 1) and form != "abc":
         raise ScoreError(f"{one_line(str(path))}: has 1 song")
     if form == "abc":
@@ -261,20 +263,20 @@ def read_written(path: Path, song: int | None = None) -> Written:
 
 def is_written(path: Path) -> bool:
     """Whether a file is a written score, and not a MIDI file; its bytes go before its name."""
-    return _format_of(path) not in ("midi", "")
+    return format_of(path) not in ("midi", "")
 
 
-def _format_of(path: Path) -> str:
+def format_of(path: Path) -> str:
     """The format of a score by its first bytes and its ending; empty for others."""
-    data, ending = _beginning(path), path.suffix.lower()
+    data, ending = beginning_of(path), path.suffix.lower()
     if data.startswith((b"MThd", b"RIFF")) or ending in MIDI:
         return "midi"
+    if ending in ABC or ABC_BEGINS.search(data):
+        return "abc"
     if ending in (*JIANPU, *ERSIPU):
         return "jianpu"
     if ending in MUSICXML or (ending not in MUSESCORE and _is_xml(data)):
         return "musicxml"
-    if ending in ABC or data.startswith((b"X:", b"%abc")):
-        return "abc"
     if ending in MUSESCORE:
         return "musescore"
     return "humdrum" if ending == ".krn" or data.startswith((b"**", b"!!!")) else ""
@@ -282,10 +284,11 @@ def _format_of(path: Path) -> str:
 
 def is_capture(path: Path) -> bool:
     """Whether a file is the capture of a session."""
-    return _beginning(path).lstrip().startswith(b"{")
+    return beginning_of(path).lstrip().startswith(b"{")
 
 
-def _beginning(path: Path) -> bytes:
+def beginning_of(path: Path) -> bytes:
+    """The first bytes of a file; none where it cannot be read."""
     try:
         with open_regular(path) as file:
             return file.read(64)

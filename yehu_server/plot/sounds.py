@@ -153,6 +153,10 @@ def sound_of(sound: Any, sample_rate: float | None = None) -> tuple[Array, float
         raise ParameterError("sample_rate: an array of sound needs one (Hz)")
     if samples.dtype.kind == "i":
         raise ParameterError("expected a sound with full scale 1, not one of integers")
+    if samples.ndim == 2 and samples.shape[1] not in (1, 2):
+        raise ParameterError(f"expected a sound of shape (frames, 2), not {samples.shape}")
+    if not samples.size or not np.isfinite(samples).all():
+        raise ParameterError("expected samples, all of them finite numbers")
     return samples, float(sample_rate)
 
 

@@ -185,6 +185,11 @@ def test_the_last_errors_that_were_not_logged_are_counted_later_and_at_the_end(s
     assert told == [f"OSC: {n} errors after the last one not shown" for n in (3, 6, 7)]
 
 
+def test_an_address_without_its_slash_is_named_with_it(still):
+    (refused,) = still.ask("/get", "playing/vibrato")
+    assert refused.arguments[1].startswith("/yehu/playing/vibrato: ")
+
+
 def test_who_plays_beyond_the_range_is_told_once_what_sounds(still):
     for call, told in [
         (("/pitch", 30.0), "30 is outside F4 to F6; the finger goes to 65"),

@@ -176,13 +176,40 @@ def test_a_wrong_word_gets_a_near_one_and_the_hint_names_the_command_as_called(
         ("render", "a.mid", "-o", "a.wav", "--reverb=x"): "; did you mean --room? ",
         ("render", "a.mid", "-o", "a.wav", "--articulation=x"): "did you mean --set ",
         ("render", "a.mid", "-o", "a.wav", "--tempo=90"): "--tempo; that is done in the file",
-        ("play",): "did you mean serve? ",
+        ("render", "a.mid", "--out=x"): "no option --out; did you mean --output? ",
+        ("play",): "did you mean render or serve? ",
         ("render", "a.mid", "-o", "a.wav", "--rom=hall"): "no option --rom; did you mean --room? "
         "(see scripts/yehu render --help)",
         ("devices", "all"): "scripts/yehu devices: all: one argument too many",
     }.items():
         with subtests.test(words):
             assert message in refused(*words)
+
+
+def test_an_error_that_names_a_file_says_what_reads_it_or_how_its_name_is_written(
+    refused, subtests, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("YEHU_COMMAND", "scripts/yehu")
+    for path in ("tune.mid", "my tune.mid"):
+        Path(path).write_bytes(b"MThd")
+    soundfile.write("take.wav", np.zeros(9), 8000)
+    Path("take.jsonl").write_text('{"format": "yehu-server capture"}\n', "utf-8")
+    out = ("-o", "out.wav")
+    for words, message in {
+        ("replay", "take.wav"): "; scripts/yehu follow plays sound files",
+        ("render", "take.wav"): "; scripts/yehu follow plays sound files",
+        ("render", "take.jsonl"): "; scripts/yehu replay plays captured sessions",
+        ("replay", "tune.mid"): "; scripts/yehu render plays scores",
+        ("render", "tun.mid"): "no such file; did you mean tune.mid?",
+        ("render", "my", "tune.mid"): "my: no such file; a name with a space is written 'my tune.",
+        ("render", "–preset", "hall"): "; an option begins with two hyphens: --preset",  # noqa: RUF001
+        ("render", "“my", "tune.mid”"): "; these are no quotation marks of a command line",
+        ("render", "tune.mid", "--preset=trill"): "; trill is an articulation: --set articulation=",
+    }.items():
+        with subtests.test(words):
+            assert message in refused(*words, *out)
+    assert "too many; scripts/yehu render plays scores" in refused("serve", "tune.mid")
 
 
 def test_behind_nohup_a_command_outlives_its_terminal(command):
@@ -336,7 +363,7 @@ def test_what_is_no_result_of_a_rendering_is_replaced_only_when_asked(
     target = out / name
     soundfile.write(target, np.ones(100), 44100, format="FLAC" if "flac" in name else "WAV")
     before = target.read_bytes()
-    assert f"{name}: exists; --overwrite replaces it" in refused("render", tune, "-o", target)
+    assert f"{name}: exists; --overwrite" in refused("render", tune, "-o", target)
     assert target.read_bytes() == before
     assert command("render", tune, "-o", target, "--overwrite")[0] == 0
     assert command("render", tune, "-o", target)[0] == 0

@@ -51,6 +51,30 @@ def test_any_option_may_stand_in_the_file(file):
     assert read.http is None
 
 
+def test_presets_combine_by_a_plus_or_one_after_another(file, tmp_path):
+    file.write_text("preset = ['sul-tasto', 'hall']\n")
+    (tmp_path / "own.toml").write_text("version = 1\n[values]\n'/room/level' = 0.5\n")
+    starts = [
+        dict(options(*words).parts[0].playing.start)
+        for words in (
+            ("--preset", "sul-tasto+hall"),
+            ("--preset", "sul-tasto", "--preset=hall"),
+            ("--config", str(file)),
+            ("--preset", "sul-tasto+hall", "--preset", str(tmp_path / "own.toml")),
+        )
+    ]
+    assert starts[0] == starts[1] == starts[2] == {**starts[3], "/room/level": 1.0}
+    assert starts[3]["/room/level"] == 0.5
+
+
+def test_an_option_of_one_value_that_is_given_twice_is_told(file, capsys):
+    file.write_text("rate = 48000\n")
+    options("--rate", "44100", "--midi-in", "a", "--midi-in", "b", "--config", str(file))
+    assert capsys.readouterr().err == ""
+    options("--room=hall", "--room", "dry", "--config", str(file))
+    assert capsys.readouterr().err.count("--room is given 2 times: the last counts") == 1
+
+
 @pytest.mark.parametrize("order", [0, 1])
 def test_the_command_line_wins_wherever_the_file_is_named(file, order):
     file.write_text("rate = 48000\nblocksize = 64\n")

@@ -233,6 +233,18 @@ def test_a_file_whose_expression_stays_at_0_is_said_to_be_silent(command, midi, 
     assert said not in command("render", midi(*tune), *target)[1]
 
 
+def test_a_wheel_that_rests_under_most_notes_is_said_to_make_them_soft(command, midi, tmp_path):
+    said = "channel 1: CC 1 is at 0 under most notes, which makes them soft; --mapping keyboard-vib"
+    tune, target = notes((0, 0.4, 70, 64)), ("-o", tmp_path / "a.wav", "--tail", 0, "--overwrite")
+    for moves, more, is_said in (
+        ((cc(0.0, 1, 0), cc(0.3, 1, 64)), (), True),
+        ((cc(0.0, 1, 0), cc(0.3, 1, 64)), ("--mapping", "keyboard-vibrato-wheel"), False),
+        ((cc(0.0, 1, 0), cc(0.1, 1, 64)), (), False),
+        ((cc(0.3, 1, 64),), (), False),
+    ):
+        assert (said in command("render", midi(*moves, *tune), *target, *more)[1]) == is_said
+
+
 # ---------------------------------------------------------------- the tail
 
 

@@ -107,7 +107,7 @@ def test_what_is_no_picture_of_ours_is_not_replaced_and_a_wrong_name_gets_one_li
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.png").write_bytes(b"\x89PNG of mine")
     for plot, wrong in (
-        ("mine.png", "mine.png: exists; --overwrite replaces it"),
+        ("mine.png", "mine.png: exists; --overwrite"),
         ("a.jpg", "a picture is a .png file"),
         ("none/a.png", "does not exist"),
     ):

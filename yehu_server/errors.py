@@ -77,6 +77,7 @@ _OTHER_WORDS = {
     "--osc": "port",
     "build": "plugin plug-in vst vst3 clap lv2",
     "page": "web browser",
+    "render": "play",
     "score": "convert export",
     "serve": "play live start run server midi osc",
     "/room/level": "reverb wet mix",
@@ -97,7 +98,7 @@ def did_you_mean(word: object, known: Collection[str], least: float = 0.7) -> st
     bare = {each.lstrip("-"): each for each in known}
     own = str(word).lstrip("-")
     begun = [each for each in bare if len(own) >= SHORTEST_BEGINNING and each.startswith(own)]
-    same = [each for each in _synonyms(own) if each in known][:1]
+    same = [each for each in _synonyms(own) if each in known][:2]
     return _hint(same or [bare[each] for each in _near(own, bare, least) or begun[:1]])
 
 

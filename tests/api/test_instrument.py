@@ -170,6 +170,16 @@ def test_stereo_has_two_sides_and_a_room_and_one_channel_has_none():
     assert level(sound[:, 0]) > 1.4 * level(sound[:, 1])  # the player sways, too
 
 
+def test_velocity_0_ends_a_note_as_in_midi():
+    sounds = []
+    for end in ("note_off", "note_on"):
+        fiddle = yehu.Instrument()
+        fiddle.note_on("A4")
+        getattr(fiddle, end)("A4", **({"velocity": 0} if end == "note_on" else {}), at=0.2)
+        sounds.append(fiddle.play(0.4))
+    np.testing.assert_array_equal(*sounds)
+
+
 # ---------------------------------------------------------------- what is refused
 
 
@@ -183,6 +193,9 @@ def test_what_is_wrong_is_reported_in_one_line(fiddle, refused):
     refused("velocity: 200 is not within 0 to 127", fiddle.note_on, "A4", np.int16(200))
     refused("F4 to F6", fiddle.slide, 30)
     refused("/bow/force", fiddle.set, "/bow/forse", 1.0)
+    refused("did you mean /playing/vibrato?", fiddle.set, "/yehu/playing/vibrato", 1.0)
+    several = {"preset": ["flautando", "hall"]}
+    refused("several with a plus: 'sul-tasto+hall'", yehu.Instrument, **several)
     refused("0 to 5 N", fiddle.set, "/bow/force", 50.0)
     refused("/bow/force", fiddle.set, "/bow/force", "much")
     refused("address", fiddle.set, 7, 1.0)

@@ -51,6 +51,13 @@ def line(axes, label: str):
     return next(each for each in axes.get_lines() if each.get_label() == label)
 
 
+def test_a_new_figure_has_room_for_the_legend_of_a_map():
+    found = result({"bow_force": [0.1, 1.0], "bow_velocity": [0.1, 0.2]}, regime=HELMHOLTZ)
+    axes = yehu.plot.regimes(found, "bow_force", "bow_velocity")
+    axes.figure.canvas.draw()
+    assert axes.get_legend().get_window_extent().x1 <= axes.figure.bbox.x1
+
+
 # ---------------------------------------------------------------- sounds
 
 
@@ -192,6 +199,11 @@ def test_what_cannot_be_drawn_is_reported_in_one_line(run, monkeypatch, refused)
     refused("top_hz", plot.spectrogram, some, RATE, top_hz=1e6)
     refused("sound", plot.level, "a.wav")
     refused("ax", plot.level, some, RATE, ax=7)
+    refused("of shape (frames, 2), not (2, 9)", plot.spectrogram, np.zeros((2, 9)), RATE)
+    for wrong in (np.zeros(0), np.array([0.0, np.nan])):
+        refused("expected samples, all of them finite", plot.pitch, wrong, RATE)
+    brief = yehu.simulate({"duration": 0.01, "controls": BOWED})
+    refused("start, end: nothing is there; it lasts 0.009977 s", plot.signals, brief, start=5)
     refused("strings_every", plot.strings, np.zeros(3), 0.0)
     refused("energy=True", plot.energy, object())
     refused("'x'", plot.regimes, found, "bow_force", "x")

@@ -71,11 +71,14 @@ def test_what_could_not_be_played_as_written_is_reported(tmp_path):
     assert len(yehu.render(damaged).warnings) > 1
 
 
-def test_it_is_saved_and_read_again(tune, tmp_path):
+def test_it_is_saved_and_read_again_and_replaces_nothing_unasked(tune, tmp_path, refused):
     found = yehu.render(tune)
     for target in (tmp_path / "a.wav", tmp_path / "a.flac"):
         target.write_text("what was there")
-        found.save(target)
+        refused("exists; --overwrite, in Python overwrite=True", found.save, target)
+        assert target.read_text() == "what was there"
+        found.save(target, overwrite=True)
+        found.save(target)  # our own
         again, rate = soundfile.read(target)
         assert (rate, soundfile.info(target).subtype) == (RATE, "PCM_24")
         assert np.abs(again - found.sound).max() < 2.0**-22

@@ -89,9 +89,12 @@ def test_a_sweep_may_be_of_notes_places_and_strings(refused):
     refused("a sweep has one finger", yehu.sweep, two, {"bow_force": [0.5]})
 
 
-def test_a_run_is_saved_by_any_path_and_reported_in_a_line(tmp_path):
+def test_a_run_is_saved_by_any_path_and_reported_in_a_line(tmp_path, refused):
     run = yehu.simulate(GESTURE)
     run.save(str(tmp_path / "run.npz"))
+    refused("run.npz: exists; --overwrite", run.save, tmp_path / "run.npz")
+    run.save(tmp_path / "run.npz", overwrite=True)
+    refused("run.wav: arrays are written; name an .npz file", run.save, tmp_path / "run.wav")
     assert np.load(tmp_path / "run.npz")["time"].shape == run.arrays["time"].shape
     assert repr(run) == f"<yehu_server.Simulation of 0.2 s at 44100 Hz, {len(run.arrays)} arrays>"
     again = yehu.Simulation.load(str(tmp_path / "run.npz"))

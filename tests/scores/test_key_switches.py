@@ -102,8 +102,12 @@ def test_keys_of_another_library_far_below_are_left_out_and_the_tune_moves(read,
     assert [note.key for note in score.notes] == [key for *_, key in TUNE]
     assert score.remarks[0] == "notes far below the tune left out, as key switches: 2"
     assert "an octave up" in score.remarks[1]
+    line = "may be key switches, far below the tune: 2 notes (--range skip)"
     shown, _ = read_as_written(tmp_path / "tune.mid")
-    assert shown.remarks == ("may be key switches, far below the tune: 2 notes (--range skip)",)
+    assert shown.remarks == (line,)
+    assert read(*switches(), *tune(), playing=replace(skips, policy=PLAYING.policy)).remarks == (
+        line,
+    )
 
 
 def test_a_rendering_without_a_note_is_an_error_and_writes_nothing(read, tmp_path):

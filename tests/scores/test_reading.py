@@ -37,6 +37,14 @@ def test_musicxml_is_known_by_its_ending_or_its_beginning(tmp_path):
             assert read_any(path).name == "tune"
 
 
+def test_abc_is_known_by_its_beginning_whatever_its_ending(tmp_path):
+    for before in ("", "\ufeff", "% from a page\n\n", "%abc-2.1\n"):
+        for name in ("tune.txt", "tune"):
+            path = tmp_path / name
+            path.write_text(f"{before}X:1\nT:A tune\nL:1/4\nK:C\nGA|\n", "utf-8")
+            assert [each.key for each in read_any(path).notes] == [67, 69], (name, before)
+
+
 def test_a_midi_file_of_any_name_is_read_as_before_and_has_no_marks_to_show(tmp_path):
     for name in ("tune.mid", "tune.kar", "tune", "tune.txt", "tune.xml"):
         path = shutil.copy(TUNE, tmp_path / name)

@@ -21,9 +21,8 @@ from yehu_lab.sweeps.study import Study, study_of
 from yehu_server.errors import ParameterError
 from yehu_server.simulation.labels import as_data, as_json, hash_of
 from yehu_server.util import __version__
-from yehu_server.util.files import replacing
 from yehu_server.util.hints import require_package
-from yehu_server.util.npz_file import read_npz
+from yehu_server.util.npz_file import read_npz, writing_npz
 
 if TYPE_CHECKING:
     import xarray
@@ -172,17 +171,20 @@ class Result:
         }
         return xarray.Dataset(found, coords=axes, attrs=attributes)
 
-    def save(self, target: str | os.PathLike[str]) -> None:
+    def save(self, target: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write one compressed ``.npz`` file; the same result makes the same bytes.
 
-        It replaces what is there.
+        Parameters
+        ----------
+        overwrite : bool
+            Replace a file that is there.
 
         Raises
         ------
         OutputError
             Where it cannot be written.
         """
-        with replacing(Path(target)) as partial, partial.open("wb") as file:
+        with writing_npz(Path(target), overwrite=overwrite) as file:
             np.savez_compressed(file, allow_pickle=False, **self.arrays())
 
     def arrays(self) -> dict[str, Array]:

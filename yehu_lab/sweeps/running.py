@@ -73,7 +73,7 @@ def sweep_to(
     try:
         run_levels(study, journal, workers, cluster, progress)
         result = result_of(study, *journal.done())
-        result.save(target)
+        result.save(target, overwrite=True)  # checked before
         journal.close(remove=True)
     except KeyboardInterrupt:
         kept = f"{journal.count} strokes are in {journal_of(target)}; the same command goes on"

@@ -120,7 +120,9 @@ def quantities_of(instrument: InstrumentLike | None) -> Quantities:
 def name_of(value: Any, what: str) -> str:
     """Return a name or a path as text; raises ParameterError where it is neither."""
     if not isinstance(value, str | os.PathLike):
-        raise ParameterError(f"{what}: expected a name or a path, got {values.brief(value)}")
+        several = "; several with a plus: 'sul-tasto+hall'" if what == "preset" else ""
+        brief = values.brief(value)
+        raise ParameterError(f"{what}: expected a name or a path, got {brief}{several}")
     return os.fspath(value)
 
 

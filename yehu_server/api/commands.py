@@ -42,7 +42,7 @@ class Commands:
         note : str or float
             Such as ``"A4"``, ``"F#5+25"`` (cents) or 69; of a yehu F4 (65) to F6 (89).
         velocity : float
-            How hard it is struck, 0 to 127 as in MIDI.
+            How hard it is struck, 0 to 127 as in MIDI, where 0 ends the note.
         at : float, optional
             When (s since the beginning); by default now.
 
@@ -53,6 +53,9 @@ class Commands:
         """
         pitch = playable(note, self._commands.notes)
         struck = number(velocity, "velocity", 0.0, 127.0) / 127.0
+        if struck == 0.0:
+            self.note_off(note, at=at)
+            return
         values = {"/playing/velocity": struck}
         self._commands.note_on(Key(CHANNEL, pitch), values, frame=self._frame(at))
         self._check()

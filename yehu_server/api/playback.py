@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from yehu_server.errors import DeviceError, ParameterError
 from yehu_server.live.audio.devices import load_portaudio
 from yehu_server.plot.sounds import is_pressure, sound_of
-from yehu_server.util.sound_file import format_of, sound_file
+from yehu_server.util.files import replace_any
+from yehu_server.util.sound_file import format_of, is_rendered, sound_file
 from yehu_server.util.subtypes import SUBTYPES
 
 Sound = NDArray[Any]
@@ -133,10 +134,13 @@ def _play_aloud(samples: Sound, rate: float) -> None:
         ) from None
 
 
-def write_sound(sound: Sound, sample_rate: int, target: Path, subtype: Subtype) -> None:
+def write_sound(
+    sound: Sound, sample_rate: int, target: Path, subtype: Subtype, *, overwrite: bool
+) -> None:
     """Write a sound file, WAV or FLAC; raises OutputError, ParameterError for the subtype."""
     if subtype not in SUBTYPES:
         raise ParameterError(f"subtype: {subtype!r} is not one of {', '.join(SUBTYPES)}")
     form, channels = format_of(target), 1 if sound.ndim == 1 else sound.shape[1]
-    with sound_file(target, sample_rate, form, subtype, channels=channels) as file:
+    may_replace = replace_any if overwrite else is_rendered
+    with sound_file(target, sample_rate, form, subtype, may_replace, channels=channels) as file:
         file.write(np.ascontiguousarray(sound))

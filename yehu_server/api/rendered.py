@@ -81,13 +81,15 @@ class Rendering:
         """How long the sound lasts (s)."""
         return len(self.sound) / self.sample_rate
 
-    def save(self, path: PathLike, *, subtype: Subtype = "24") -> None:
-        """Write a sound file, WAV or FLAC by its ending; it replaces what is there.
+    def save(self, path: PathLike, *, subtype: Subtype = "24", overwrite: bool = False) -> None:
+        """Write a sound file, WAV or FLAC by its ending; it replaces one that this program made.
 
         Parameters
         ----------
         subtype : "16", "24" or "float"
             Format of the samples.
+        overwrite : bool
+            Replace any other file that is there, too.
 
         Raises
         ------
@@ -99,7 +101,9 @@ class Rendering:
         >>> import yehu_server as yehu
         >>> yehu.render([("A4", 0.0, 0.2)]).save("a4.flac")
         """
-        write_sound(self.sound, self.sample_rate, path_of(path, "path"), subtype)
+        write_sound(
+            self.sound, self.sample_rate, path_of(path, "path"), subtype, overwrite=overwrite
+        )
 
     def _repr_html_(self) -> str:
         return AudioWidget(self.sound, self.sample_rate)._repr_html_()

@@ -15,6 +15,7 @@ from yehu_server.cli.commands import all_commands, module_of
 from yehu_server.cli.config import parse
 from yehu_server.cli.render_pipe import BROKEN_PIPE
 from yehu_server.cli.terminal import INTERRUPTED, interrupt, warn, warn_of
+from yehu_server.cli.wrong_words import hint_at
 from yehu_server.errors import YehuError
 from yehu_server.system.processes import on_termination
 from yehu_server.util import __version__
@@ -42,9 +43,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     logging.basicConfig(format="yehu-server: %(message)s", level=logging.WARNING)
     if hasattr(sys.stdout, "reconfigure"):  # a title may have letters that a terminal has not
         sys.stdout.reconfigure(errors="backslashreplace")
+    words = sys.argv[1:] if argv is None else argv
     try:
         try:
-            words = sys.argv[1:] if argv is None else argv
             arguments = parse(words, _parser(words, whole=False))
             code: int = arguments.run(arguments)
         finally:
@@ -55,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             os.dup2(nothing.fileno(), sys.stdout.fileno())
         return BROKEN_PIPE
     except YehuError as error:
-        warn_of(error)
+        warn_of(error, hint_at(words, str(error)))
         return 2
     except OSError as error:
         if error.errno != errno.ENOSPC:  # of standard output: errors of files name them

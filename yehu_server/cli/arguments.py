@@ -6,7 +6,8 @@ import argparse
 import contextlib
 import inspect
 import re
-from collections.abc import Callable, Collection
+from collections import Counter
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -15,6 +16,7 @@ from rich_argparse import RawDescriptionRichHelpFormatter
 
 from yehu_server.cli.converters import folder, target
 from yehu_server.cli.terminal import warn
+from yehu_server.cli.wrong_words import other_command
 from yehu_server.errors import did_you_mean, one_line
 from yehu_server.live.network import OSC_ADDRESS, format_address, parse_address
 from yehu_server.params.table import BY_ADDRESS
@@ -126,6 +128,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, *args: Any, **words: Any) -> None:
         super().__init__(*args, **words)
         self._actions_by_word: dict[str, Parser] = {}
+        self._words: Sequence[str] = ()
 
     def add_word(self, word: str, run: Callable[[argparse.Namespace], int], text: str) -> Parser:
         """Add an action beside the command's own arguments, by its first word; return its parser.
@@ -149,13 +152,27 @@ class Parser(argparse.ArgumentParser):
         action = self._actions_by_word.get(args[0]) if args else None
         if action is not None:
             return action.parse_known_args(args[1:], namespace)
+        self._words = args or ()
+        if namespace is None:  # else once more, beside a config file
+            self._warn_of_repeated()
         known: tuple[argparse.Namespace, list[str]] = super().parse_known_args(args, namespace)
         if known[1]:
             word = known[1][0].partition("=")[0]
             is_option = word.startswith("-")
-            near = self._near(word)
-            self.error(f"no option {word}{near}" if is_option else f"{word}: one argument too many")
+            hint = other_command(self.prog.split()[-1], word)
+            self.error(self._unknown(word) if is_option else f"{word}: one argument too many{hint}")
         return known
+
+    def _warn_of_repeated(self) -> None:
+        """Warn of options that have one value, and are given several."""
+        given = Counter(word.partition("=")[0] for word in self._words)
+        for option, count in given.items():
+            action = self.options.get(option)
+            if count > 1 and action and action.nargs != 0 and action.default != []:
+                warn(f"{option} is given {count} times: the last counts")
+
+    def _unknown(self, option: str) -> str:
+        return f"no option {option}{self._near(option)}"
 
     def _near(self, option: str) -> str:
         """A hint at an option, or at the parameter of that name where one can be set."""
@@ -173,7 +190,12 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and exit with code 2."""
-        message = one_line(self.worded(message))
+        message = self.worded(message)
+        given = (word.partition("=")[0] for word in self._words if word.startswith("--"))
+        wrong = [word for word in given if word not in self.options and word != "--"]
+        if message.startswith("missing") and wrong:  # it may be the one that is missing
+            message = self._unknown(wrong[0])
+        message = one_line(message)
         self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
 
     def worded(self, message: str) -> str:

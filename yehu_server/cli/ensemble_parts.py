@@ -102,13 +102,16 @@ def players_of(
 
 def _with_own_moves(score: Score, written: Score, name: str, within: NoteRange) -> Score:
     """A part whose remark on moves is of itself alone, where others have other instruments."""
+    from yehu_server.scores.chords import is_single, tops_of
     from yehu_server.scores.octaves import octaves_of
     from yehu_server.scores.score import REST_S
     from yehu_server.scores.written.in_range import MOVED, line_of
 
     remarks = [line for line in score.remarks if not line.startswith(MOVED)]
     if len(remarks) < len(score.remarks):
-        octaves = octaves_of(written.note_columns.spans(), REST_S, within)
+        notes = written.note_columns
+        single = notes.where(is_single(tops_of(notes)))
+        octaves = octaves_of(single.spans(), REST_S, within)
         if octaves.summary:
             remarks.append(line_of([(name, octaves)], within))
     return replace(score, remarks=tuple(remarks))

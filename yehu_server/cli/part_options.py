@@ -103,6 +103,7 @@ def _own(arguments: argparse.Namespace, number: int) -> argparse.Namespace | Non
         return None
     own = copy.copy(arguments)
     own.set = [*arguments.set, *given.pop("set")]
+    own.preset = given.pop("preset") or arguments.preset
     own.mpe = arguments.mpe and not given["mapping"]
     for option, texts in given.items():
         if len(texts) > 1:

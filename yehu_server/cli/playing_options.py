@@ -80,8 +80,9 @@ def add_tables(group: Any, usual_preset: str = "none") -> None:
     add_options(
         group,
         f"""
-        --preset NAME: sound to start with: the name of a preset, or a file; several with a plus,
-            such as sul-tasto+hall (default: {usual_preset}); yehu-server presets list names all
+        --preset NAME ...: sound to start with: the name of a preset, or a file; several with a
+            plus, such as sul-tasto+hall, or one after another (default: {usual_preset});
+            yehu-server presets list names all
         """,
     )
     add_presets_folder(group)
@@ -194,11 +195,11 @@ def table_options_of(arguments: argparse.Namespace, *, is_live: bool = False) ->
         tuning=tuning_of(arguments),
         policy=RangePolicy(arguments.range),
     )
-    name = arguments.preset
-    if name is None and is_live and arguments.mapping is None and not arguments.mpe:
-        name = FIRST_LIVE
-    if name is not None:
-        for remark in playing.presets.find(name).remarks():
+    names = arguments.preset
+    if not names and is_live and arguments.mapping is None and not arguments.mpe:
+        names = [FIRST_LIVE]
+    if names:
+        for remark in playing.presets.find(*names).remarks():
             warn(remark)
-        playing = playing.with_preset(name)
+        playing = playing.with_preset(*names)
     return replace(playing, start=(*LIVE.items(), *playing.start)) if is_live else playing

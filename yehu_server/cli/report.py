@@ -16,7 +16,6 @@ from yehu_server.live.page.guests import LISTEN, OWN, PLAY, Guests
 from yehu_server.params.table import PREFIX, find
 from yehu_server.playing.mapping import Mapping as ControllerMapping
 from yehu_server.playing.pitch_and_level import note_name
-from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.replay import Replayed
 from yehu_server.rendering.summary import PartSummary, Summary, counted
 from yehu_server.simulation.run import Simulation, faults_of
@@ -53,9 +52,7 @@ def render_report(target: Path, summary: Summary) -> str:
     else:
         plural = "s" if len(summary.notes_by_channel) > 1 else ""
         lines.append(f"MIDI channel{plural} {heard}" if heard else "no notes to play")
-    skips = summary.policy is RangePolicy.SKIP
-    moved_hint = "" if skips else " (--range skip leaves out key switches of another library)"
-    lines += summary.remarks("; --channel 10 plays them", moved_hint)
+    lines += summary.remarks("; --channel 10 plays them")
     if summary.friction_bound >= NOTABLE_BOUND:
         lines.append(
             "note: at this sample rate the bow sticks less reliably; a higher --rate is better"

@@ -19,7 +19,6 @@ from yehu_server.cli.arguments import (
 )
 from yehu_server.cli.converters import positive, target
 from yehu_server.cli.terminal import compile_all, print_report, progress_bar
-from yehu_server.errors import OutputError
 from yehu_server.util.files import check_distinct
 
 
@@ -48,13 +47,13 @@ def run(arguments: argparse.Namespace) -> int:
     from yehu_server.cli.report import simulate_report
     from yehu_server.scores.gesture import read_gesture
     from yehu_server.simulation.run import COMPILED, simulate
+    from yehu_server.util.npz_file import check_npz
 
     gesture = read_gesture(arguments.gesture, arguments.instrument)
     own = [] if arguments.instrument is None else [arguments.instrument]
     check_distinct({"-o": arguments.output}, [arguments.gesture, *own])
     check_new(arguments)
-    if arguments.output.suffix.lower() not in ("", ".npz"):
-        raise OutputError(f"{arguments.output}: simulate writes arrays; name an .npz file")
+    check_npz(arguments.output)
     compile_all(arguments, COMPILED if arguments.energy else {})
     with progress_bar(arguments, "simulating") as progress:
         result = simulate(

@@ -54,9 +54,10 @@ def warn(text: str) -> None:
     print(f"yehu-server: {one_line(text)}", file=sys.stderr)
 
 
-def warn_of(error: YehuError) -> None:
-    """Print an error, and all that is wrong beside it."""
-    for line in error.lines:
+def warn_of(error: YehuError, hint: str = "") -> None:
+    """Print an error, with a hint, and all that is wrong beside it."""
+    first, *others = error.lines
+    for line in (first + hint, *others):
         warn(line)
 
 

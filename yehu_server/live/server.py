@@ -233,6 +233,7 @@ class Server:
             self._housekeeper.stop()
             self._files.shutdown()
             self.takes.close()
+            self.context.count_errors(is_end=True)
 
     def skip_fade_out(self) -> None:
         """Let `stop` not wait for notes to fade; any thread or signal handler may call."""

@@ -30,6 +30,7 @@ ANSWERED_TO_A_HOST, ANSWERED_TO_ALL_HOSTS = 2, 16  # times as much
 UNSENT = 1 << 18  # waiting for one connection or WebSocket
 ERRORS_A_SECOND, ERRORS_AT_ONCE = 10.0, 20.0  # to one client
 LOGGED_ERRORS_A_SECOND, LOGGED_ERRORS_AT_ONCE = 0.1, 5.0  # in the terminal, of all
+ERRORS_COUNTED_AFTER_S = 2.0  # without another one
 WRONG_ADDRESSES = 1024  # of which an error was logged
 CHANGES_AT_ONCE = 512  # messages of one round to all subscribers
 SUBSCRIBERS, SUBSCRIBERS_A_HOST = 64, 32

@@ -235,7 +235,7 @@ def find(address: str) -> Param:
     except KeyError:
         # Those that the player does not move come first.
         known = sorted(BY_ADDRESS, key=lambda each: BY_ADDRESS[each].player_controlled)
-        hint = near_address(address, known) or "; docs/parameters.md has all"
+        hint = near_address(address, known, prefix=PREFIX) or "; docs/parameters.md has all"
         raise ParameterError(f"unknown parameter {address!r}{hint}") from None
 
 

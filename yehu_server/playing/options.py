@@ -83,10 +83,10 @@ class PlayingOptions:
             return playing
         return replace(playing, bowing=bowing_tables.read_bowing_table(practice), practice=practice)
 
-    def with_preset(self, name: str) -> PlayingOptions:
-        """The same options with the sound of a preset; raises YehuError where it is none."""
-        values = self.presets.find(name).values
-        return replace(self, preset=self.presets.find_file(name), start=tuple(values.items()))
+    def with_preset(self, *names: str) -> PlayingOptions:
+        """The same options with the sound of presets; raises YehuError where one is none."""
+        values = self.presets.find(*names).values
+        return replace(self, preset=self.presets.find_file(names[0]), start=tuple(values.items()))
 
     def shaping(self, usual: float) -> PlayingOptions:
         """The same options with `phrasing` and `rubato` set: as asked for, or as usual."""

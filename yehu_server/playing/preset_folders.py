@@ -110,11 +110,12 @@ class Presets:
         found = [self._read(self.file(each), each.removeprefix(MINE)) for each in names]
         return found[0] if len(found) == 1 else together(found)
 
-    def find(self, name_or_path: str) -> Preset:
-        """Read a preset by its name or path; raises PresetError as `load`."""
-        if is_name(name_or_path):
-            return self.load(name_or_path)
-        return read_preset(Path(name_or_path))
+    def find(self, *names_or_paths: str) -> Preset:
+        """Read a preset by its name or path, or several as one; raises PresetError as `load`."""
+        found = [
+            self.load(each) if is_name(each) else read_preset(Path(each)) for each in names_or_paths
+        ]
+        return found[0] if len(found) == 1 else together(found)
 
     def find_file(self, name_or_path: str) -> Path:
         """The file that `find` reads, of several the first; raises PresetError as `file`."""

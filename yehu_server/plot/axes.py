@@ -26,6 +26,8 @@ def axes_of(ax: Any) -> Axes:
     if ax is None:
         import matplotlib.pyplot as plt
 
+        if not plt.get_fignums():
+            plt.figure(layout="constrained")  # with room for a legend beside the axes
         return plt.gca()
     if not isinstance(ax, Axes):
         raise ParameterError(f"ax: expected axes of matplotlib, not {type(ax).__name__}")

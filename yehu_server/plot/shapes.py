@@ -76,9 +76,11 @@ def signals(
         if name not in known:
             there = f"(there are: {', '.join(known)}){did_you_mean(name, known)}"
             raise ParameterError(f"there is no signal {name!r} {there}")
-    figure = figure_of(figure, WIDTH, HEIGHT * len(shown) + 0.5)
     time = arrays["time"]
     part = (time >= start) & (time <= (time[-1] if end is None else end))
+    if not part.any():
+        raise ParameterError(f"start, end: nothing is there; it lasts {max(time, default=0):.4g} s")
+    figure = figure_of(figure, WIDTH, HEIGHT * len(shown) + 0.5)
     panels = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
     for ax, name in zip(panels, shown, strict=True):
         ax.plot(time[part], arrays[name][part].reshape(int(part.sum()), -1), lw=0.8)

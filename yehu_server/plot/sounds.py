@@ -58,7 +58,7 @@ def spectrogram(
     >>> yehu.plot.spectrogram(tune, top_hz=5000).get_ylabel()
     'kHz'
     """
-    data = plot_data_of(sound, sample_rate)
+    data = _drawn(sound, sample_rate)
     axes = axes_of(ax)
     if not (isinstance(top_hz, Real) and 0.0 < top_hz <= TOP_HZ):
         raise ParameterError(f"top_hz: {top_hz} is not within 0 to {TOP_HZ:g} Hz")
@@ -90,7 +90,7 @@ def level(sound: Any, sample_rate: float | None = None, *, ax: Axes | None = Non
     >>> yehu.plot.level(yehu.render([("A4", 0.0, 0.3)])).get_ylabel()
     'dB of full scale'
     """
-    data = plot_data_of(sound, sample_rate)
+    data = _drawn(sound, sample_rate)
     axes = axes_of(ax)
     draw_level(axes, data)
     axes.set(xlim=(0.0, data.duration_s), xlabel="s")
@@ -124,11 +124,19 @@ def pitch(
     >>> yehu.plot.pitch(yehu.render([("F4", 0.0, 0.3), ("A4", 0.3, 0.3)])).get_ylabel()
     'pitch'
     """
-    data = plot_data_of(sound, sample_rate, a4)
+    data = _drawn(sound, sample_rate, a4)
     axes = axes_of(ax)
     draw_pitch(axes, data)
     axes.set(xlim=(0.0, data.duration_s), xlabel="s")
     return axes
+
+
+def _drawn(sound: Any, sample_rate: float | None, a4: float | None = None) -> PlotData:
+    """What is drawn of a sound; raises ParameterError where it has nothing to draw."""
+    samples, _ = sound_of(sound, sample_rate)
+    if not samples.size or not np.isfinite(samples).all():
+        raise ParameterError("expected samples, all of them finite numbers")
+    return plot_data_of(sound, sample_rate, a4)
 
 
 def sound_of(sound: Any, sample_rate: float | None = None) -> tuple[Array, float]:
@@ -153,6 +161,8 @@ def sound_of(sound: Any, sample_rate: float | None = None) -> tuple[Array, float
         raise ParameterError("sample_rate: an array of sound needs one (Hz)")
     if samples.dtype.kind == "i":
         raise ParameterError("expected a sound with full scale 1, not one of integers")
+    if samples.ndim == 2 and samples.shape[1] not in (1, 2):
+        raise ParameterError(f"expected a sound of shape (frames, 2), not {samples.shape}")
     return samples, float(sample_rate)
 
 

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mido
+import numpy as np
 
 from yehu_server.core.engine.limiter import CEILING
 from yehu_server.playing.stringing import range_text
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.rendering.performance import PartPlayer, Performance
+from yehu_server.scores.events import CONTROL
 
 FATE = {
     RangePolicy.TRANSPOSE: "moved by octaves",
@@ -18,7 +20,7 @@ FATE = {
     RangePolicy.SKIP: "left out",
 }
 
-VOLUME, EXPRESSION, RESET = 7, 11, 121  # controllers
+WHEEL, VOLUME, EXPRESSION, RESET = 1, 7, 11, 121  # controllers
 LEAST = 2  # of CC 7 and 11: below, the bow leaves the string, or nothing is heard
 NOTABLE_DB, MOST_TOLD_DB = 1.0, 7.0  # of the limiter
 
@@ -75,8 +77,9 @@ class Summary:
     clipped: tuple[str, ...] = ()  # stems above full scale, in a format that ends there
     asked_lufs: float | None = None  # that it was scaled to, as far as its true peak allows
     unheard_channels: tuple[int, ...] = ()  # 1 to 16: whose CC 7 or 11 stays at 0
+    resting_wheels: tuple[int, ...] = ()  # 1 to 16: whose CC 1 makes most of their notes soft
 
-    def remarks(self, drum_hint: str = "", moved_hint: str = "") -> list[str]:
+    def remarks(self, drum_hint: str = "") -> list[str]:
         """What was not played as it is written, and hints at what to do about some of it."""
         percussion, moved = (
             counted(notes, "note") for notes in (self.percussion_notes, self.notes_out_of_range)
@@ -84,19 +87,24 @@ class Summary:
         programs = ", ".join(map(str, self.unknown_programs))
         more = self.limited_db >= MOST_TOLD_DB
         decibels = f"{MOST_TOLD_DB:g} dB or more" if more else f"{self.limited_db:.1f} dB"
-        channels, clipped = ", ".join(map(str, self.unheard_channels)), ", ".join(self.clipped)
+        channels, resting = (
+            ", ".join(map(str, of)) for of in (self.unheard_channels, self.resting_wheels)
+        )
+        clipped = ", ".join(self.clipped)
         lower = counted(self.lower_notes, "lower note")
         solves = counted(self.unconverged_solves, "friction solve")
-        lost, fate = counted(self.lost_states, "time"), f"{FATE[self.policy]}{moved_hint}"
+        lost = counted(self.lost_states, "time")
         reached, asked = self.loudness_lufs, self.asked_lufs
         quieter = 0.0 if reached is None or asked is None else asked - reached
         lines = {
             f"{quieter:.1f} LU quieter than asked for: the true peak is -1 dBFS": quieter > 0.05,
             f"channel 10 is percussion: {percussion} not played{drum_hint}": self.percussion_notes,
-            f"{moved} outside {self.range}, {fate}": self.notes_out_of_range,
+            f"{moved} outside {self.range}, {FATE[self.policy]}": self.notes_out_of_range,
             f"{lower} of chords are not played": self.lower_notes,
             f"no preset for the programs {programs}: ignored": programs,
             f"channel {channels}: CC 7 or 11 stays at 0: no note is heard": channels,
+            f"channel {resting}: CC 1 is at 0 under most notes, which makes them soft; "
+            "--mapping keyboard-vibrato-wheel plays it as vibrato": resting,
             f"the limiter lowered the highest peak by {decibels}; a lower --gain-db "
             "keeps it": self.limited_db >= NOTABLE_DB,
             f"clipped: {clipped}; float samples, or a lower --gain-db, keep it": clipped,
@@ -152,6 +160,7 @@ def summary_of(
         clipped=tuple(clipped),
         asked_lufs=asked_lufs,
         unheard_channels=tuple(sorted({each for one in players for each in _unheard(one)})),
+        resting_wheels=tuple(sorted({each for one in players for each in _resting_wheels(one)})),
     )
 
 
@@ -186,6 +195,25 @@ def _unheard(one: PartPlayer) -> set[int]:
         for channel in one.player.notes_by_channel
         if any(of_channel.get(channel, 127) < LEAST for of_channel in highest.values())
     }
+
+
+def _resting_wheels(one: PartPlayer) -> set[int]:
+    """The channels, from 1, whose CC 1 moves the bow, and is at 0 for most of the notes' time."""
+    binds, score = one.part.playing.mapping.of(f"cc {WHEEL}"), one.part.score
+    if all(bind.target != "/playing/intensity" for bind in binds):
+        return set()
+    events, notes = score.events, score.note_columns
+    is_wheel = (events.kind == CONTROL) & (events.first == WHEEL)
+    found = set()
+    for channel in one.player.notes_by_channel:
+        moves = events.where(is_wheel & (events.code >> 16 & 15 == channel))
+        sounding = notes.where(notes.channel == channel)
+        times = np.append(moves.time_s, score.duration_s)
+        rested_s = np.append(0.0, np.cumsum(np.diff(times) * (moves.second == 0)))
+        at_0 = (np.interp(each, times, rested_s) for each in (sounding.end_s, sounding.start_s))
+        if 2.0 * np.subtract(*at_0).sum() > (sounding.end_s - sounding.start_s).sum():
+            found.add(channel + 1)
+    return found
 
 
 def _part_summary(one: PartPlayer) -> PartSummary:

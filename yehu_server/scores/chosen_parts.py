@@ -10,6 +10,7 @@ import numpy as np
 from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, did_you_mean
+from yehu_server.scores.chords import is_single, tops_of
 from yehu_server.scores.events import KEY, NoteColumns
 from yehu_server.scores.octaves import NO_NOTES, octaves_of_parts
 from yehu_server.scores.score import REST_S, Score, ScorePart
@@ -125,12 +126,14 @@ def midi_in_range(
     channels: Collection[int] | None = None,
     *,
     is_mpe: bool = False,
+    is_section: bool = False,
     within: NoteRange = YEHU,
 ) -> Score:
     """Return a score of MIDI with each part moved by octaves into range, and a remark of that.
 
     With `is_mpe` the notes of a part are on channels of their own, and all are one part. The range
-    is that of `within`. Only what `channels` play moves, by default all but percussion.
+    is that of `within`. Only what `channels` play moves, by default all but percussion. The highest
+    notes of chords count, and the others follow them; in a section all notes count.
     """
     channels = MELODIC if channels is None else channels
     events = score.events
@@ -145,10 +148,13 @@ def midi_in_range(
     if is_mpe:
         names, part = names[:1], np.zeros_like(part)
     order = np.argsort(part, kind="stable")
-    spans = notes.spans(part, sharper[notes.begins]).where(order)
-    found = octaves_of_parts(spans, REST_S, within)
+    notes, part = notes.where(order), part[order]
+    tops = np.arange(len(part)) if is_section else tops_of(notes, part)
+    counts = is_single(tops)
+    found = octaves_of_parts(notes.spans(part, sharper[notes.begins]).where(counts), REST_S, within)
     by = np.zeros(len(part), np.int64)  # octaves
-    by[order] = np.concatenate([octaves.of_notes for octaves in (*found, NO_NOTES)])
+    by[counts] = np.concatenate([octaves.of_notes for octaves in (*found, NO_NOTES)])
+    by = by[tops]
     of_first = notes.channel[np.unique(part, return_index=True)[1]].tolist()
     parts = [
         ("" if len(names) == 1 else name, octaves)

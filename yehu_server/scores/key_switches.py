@@ -9,6 +9,7 @@ import numpy as np
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError
 from yehu_server.params.articulations import ARTICULATIONS
+from yehu_server.scores.chords import is_single, tops_of
 from yehu_server.scores.events import NOTE_OFF, NOTE_ON, Setting
 from yehu_server.scores.score import Score, without_notes
 from yehu_server.scores.slides import ARTICULATION
@@ -75,6 +76,19 @@ def low_keys(score: Score, channels: Collection[int], within: NoteRange = YEHU) 
         if 2 * len(low) <= len(own):
             found.append(notes.begins[low])
     return np.concatenate(found)
+
+
+def with_low_keys_told(score: Score, channels: Collection[int], within: NoteRange = YEHU) -> Score:
+    """A score with a remark that counts its `low_keys`, but for the lower notes of chords."""
+    low = low_keys(score, channels, within)
+    notes = score.note_columns
+    notes = notes.where(np.isin(notes.channel, [*channels]))
+    if len(low):
+        low = low[np.isin(low, notes.begins[is_single(tops_of(notes))])]
+    if not len(low):
+        return score
+    remark = f"may be key switches, far below the tune: {len(low)} notes (--range skip)"
+    return replace(score, remarks=(*score.remarks, remark))
 
 
 def without_low_keys(score: Score, channels: Collection[int], within: NoteRange) -> Score:

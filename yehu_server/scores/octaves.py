@@ -47,7 +47,6 @@ class Octaves:
     # Number of phrases, and of those that are moved otherwise.
     phrases: int
     others: int
-    outside: int  # notes that are outside the range still
 
     @property
     def summary(self) -> str:
@@ -58,12 +57,10 @@ class Octaves:
         if self.others:
             how = "otherwise" if self.whole else "by octaves"
             words.append(f"{self.others} of {self.phrases} phrases {how}")
-        if self.outside and words:
-            words.append(f"{self.outside} {'note' if self.outside == 1 else 'notes'} alone")
         return ", ".join(words)
 
 
-NO_NOTES = Octaves(np.zeros(0, np.int64), 0, 0, 0, 0)
+NO_NOTES = Octaves(np.zeros(0, np.int64), 0, 0, 0)
 
 
 def octaves_of(notes: NoteSpans, rest: float, within: NoteRange = YEHU) -> Octaves:
@@ -92,9 +89,8 @@ def octaves_of_parts(notes: NoteSpans, rest: float, within: NoteRange = YEHU) ->
     firsts = np.flatnonzero(is_new[starts])
     whole = _best(np.add.reduceat(outside, firsts, axis=1), 0)
     own = _best(outside, whole[of_part])
-    left = outside[own + FARTHEST, np.arange(len(own))]
     others = np.add.reduceat(own != whole[of_part], firsts, dtype=np.int64)
-    counts = np.diff(firsts, append=len(own)), others, np.add.reduceat(left, firsts)
+    counts = np.diff(firsts, append=len(own)), others
     of_notes = np.split(
         np.repeat(own, np.diff(starts, append=len(part))), np.flatnonzero(is_new)[1:]
     )

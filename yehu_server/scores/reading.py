@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,11 +15,12 @@ from yehu_server.core.midi.channels import PERCUSSION_CHANNEL
 from yehu_server.core.player.note_range import YEHU, NoteRange
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.playing.options import PlayingOptions
+from yehu_server.playing.parts import section_size
 from yehu_server.playing.stringing import notes_of as range_of
 from yehu_server.playing.tuning import RangePolicy
 from yehu_server.scores import chosen_parts
 from yehu_server.scores.events import NoteColumns, uncollected
-from yehu_server.scores.key_switches import with_key_switches, without_low_keys
+from yehu_server.scores.key_switches import with_key_switches, with_low_keys_told, without_low_keys
 from yehu_server.scores.rubato import delays_of, midi_delays
 from yehu_server.scores.score import (
     MAX_DURATION_H,
@@ -109,6 +111,7 @@ READERS = {  # but for ABC, which has several songs
     "musescore": "yehu_server.scores.musicxml.musescore:read_musescore",
     "musicxml": "yehu_server.scores.musicxml.reader:read_musicxml",
 }
+ABC_BEGINS = re.compile(rb"^(\xef\xbb\xbf)?(X: *\d|%abc)", re.MULTILINE)
 BYTE_ORDER_MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
 
 
@@ -122,6 +125,7 @@ class ReadOptions:
     in_range: bool = True  # whether parts are moved by octaves as a whole, to fit the instrument
     leaves_low_keys: bool = False  # whether keys far below a tune of a MIDI file are left out
     is_mpe: bool = False  # whether the channels of a MIDI file are notes, and not parts
+    is_section: bool = False  # whether several players share the notes of chords
     within: NoteRange = YEHU  # the notes of the instrument
     channels: Collection[int] | None = None  # of a MIDI file that are played: all but percussion
     key_switches: int | None = None  # of a MIDI file: see `Mapping`
@@ -137,6 +141,7 @@ class ReadOptions:
             in_range=playing.policy is not RangePolicy.CLAMP and playing.tuning.has_octaves,
             leaves_low_keys=playing.policy is RangePolicy.SKIP,
             is_mpe=playing.mapping.mpe,
+            is_section=section_size(playing) > 1,
             # In the keys of the score, which the tuning transposes.
             within=range_of(playing.quantities).transposed(-playing.tuning.transposed_by),
             channels=playing.channels,
@@ -211,8 +216,9 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
     played = chosen_parts.MELODIC if options.channels is None else options.channels
     played = range(16) if is_mpe else {*chosen_parts.MELODIC, *played}
     score = with_key_switches(score, options.key_switches, played)
-    if options.leaves_low_keys and not is_mpe:
-        score = without_low_keys(score, played, options.within)
+    if not is_mpe:
+        treated = without_low_keys if options.leaves_low_keys else with_low_keys_told
+        score = treated(score, played, options.within)
     tune = score if is_mpe else chosen_parts.default_midi_part(score)
     delays = midi_delays(score, tune)
     if options.parts:
@@ -224,9 +230,13 @@ def _midi_played(score: Score, options: ReadOptions) -> Score:
         line = "has controllers and no note: nothing sounds"
         score = replace(score, remarks=(*score.remarks, line))
     elif options.in_range:
-        channels = range(16) if is_mpe else options.channels
-        within = options.within
-        score = chosen_parts.midi_in_range(score, channels, is_mpe=is_mpe, within=within)
+        score = chosen_parts.midi_in_range(
+            score,
+            range(16) if is_mpe else options.channels,
+            is_mpe=is_mpe,
+            is_section=options.is_section,
+            within=options.within,
+        )
     return replace(score, delays=delays)
 
 
@@ -235,7 +245,7 @@ def read_written(path: Path, song: int | None = None) -> Written:
 
     Raises ScoreError, one line naming the file, where it cannot be read or is none of these.
     """
-    form = _format_of(path)
+    form = format_of(path)
     if song not in (None, 1) and form != "abc":
         raise ScoreError(f"{one_line(str(path))}: has 1 song")
     if form == "abc":
@@ -253,20 +263,20 @@ def read_written(path: Path, song: int | None = None) -> Written:
 
 def is_written(path: Path) -> bool:
     """Whether a file is a written score, and not a MIDI file; its bytes go before its name."""
-    return _format_of(path) not in ("midi", "")
+    return format_of(path) not in ("midi", "")
 
 
-def _format_of(path: Path) -> str:
+def format_of(path: Path) -> str:
     """The format of a score by its first bytes and its ending; empty for others."""
-    data, ending = _beginning(path), path.suffix.lower()
+    data, ending = beginning_of(path), path.suffix.lower()
     if data.startswith((b"MThd", b"RIFF")) or ending in MIDI:
         return "midi"
+    if ending in ABC or ABC_BEGINS.search(data):
+        return "abc"
     if ending in (*JIANPU, *ERSIPU):
         return "jianpu"
     if ending in MUSICXML or (ending not in MUSESCORE and _is_xml(data)):
         return "musicxml"
-    if ending in ABC or data.startswith((b"X:", b"%abc")):
-        return "abc"
     if ending in MUSESCORE:
         return "musescore"
     return "humdrum" if ending == ".krn" or data.startswith((b"**", b"!!!")) else ""
@@ -274,10 +284,11 @@ def _format_of(path: Path) -> str:
 
 def is_capture(path: Path) -> bool:
     """Whether a file is the capture of a session."""
-    return _beginning(path).lstrip().startswith(b"{")
+    return beginning_of(path).lstrip().startswith(b"{")
 
 
-def _beginning(path: Path) -> bytes:
+def beginning_of(path: Path) -> bytes:
+    """The first bytes of a file; none where it cannot be read."""
     try:
         with open_regular(path) as file:
             return file.read(64)

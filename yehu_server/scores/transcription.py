@@ -24,7 +24,7 @@ from yehu_server.playing.sources import RESERVED
 from yehu_server.scores.capture import Capture, read_capture
 from yehu_server.scores.chosen_parts import MELODIC, finder_of, tune_of
 from yehu_server.scores.events import ScoreEvent
-from yehu_server.scores.key_switches import low_keys
+from yehu_server.scores.key_switches import with_low_keys_told
 from yehu_server.scores.phrasing import FEW_VELOCITIES, MARKED_SPAN
 from yehu_server.scores.reading import is_capture, is_written, read_written
 from yehu_server.scores.score import (
@@ -84,10 +84,7 @@ def read_as_written(
         written, lost = written_of_midi(score, tempo)
     # Chords are single lines here, and may look like a tune.
     tune = tune_of(score) if len(score.parts) == len(written.parts) else None
-    remarks = score.remarks
-    if low := len(low_keys(score, MELODIC)):
-        line = f"may be key switches, far below the tune: {low} notes (--range skip)"
-        remarks = (*remarks, line)
+    remarks = with_low_keys_told(score, MELODIC).remarks
     return replace(written, warnings=score.warnings, remarks=remarks, tune=tune), lost
 
 

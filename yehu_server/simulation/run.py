@@ -23,9 +23,8 @@ from yehu_server.errors import OutputError
 from yehu_server.scores.gesture import CONTROLS, Gesture, Pluck
 from yehu_server.simulation.labels import as_data, as_json, dimensions, hash_of, label_of
 from yehu_server.util import __version__
-from yehu_server.util.files import replace_any, replace_none, replacing
 from yehu_server.util.hints import require_package
-from yehu_server.util.npz_file import read_npz
+from yehu_server.util.npz_file import read_npz, writing_npz
 
 if TYPE_CHECKING:
     import xarray
@@ -133,18 +132,20 @@ class Simulation:
             raise ValueError("something is missing")
         return cls(arrays, meta)
 
-    def save(self, path: str | os.PathLike[str], *, overwrite: bool = True) -> None:
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write an uncompressed ``.npz``; ``meta`` is JSON text within it.
 
-        It replaces what is there, unless `overwrite` is false.
+        Parameters
+        ----------
+        overwrite : bool
+            Replace a file that is there.
 
         Raises
         ------
         OutputError
             Where it cannot be written.
         """
-        may_replace = replace_any if overwrite else replace_none
-        with replacing(Path(path), may_replace) as partial, partial.open("wb") as file:
+        with writing_npz(Path(path), overwrite=overwrite) as file:
             np.savez(file, allow_pickle=False, meta=np.array(json.dumps(self.meta)), **self.arrays)
 
 

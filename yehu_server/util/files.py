@@ -182,7 +182,7 @@ def replace_none(_target: Path) -> bool:
 def check_free(target: Path, may_replace: Callable[[Path], bool] = replace_none) -> None:
     """Check that a target is not there, or may be replaced; raises OutputError where it may not."""
     if os.path.lexists(target) and not may_replace(target):
-        raise OutputError(f"{target}: exists; --overwrite replaces it")
+        raise OutputError(f"{target}: exists; --overwrite, in Python overwrite=True, replaces it")
 
 
 def create(target: Path, *, overwrite: bool = False, room_bytes: int = 0) -> io.FileIO:

@@ -1,15 +1,22 @@
-"""Reads arrays from npz files of anybody: at once, and no more than such a file may hold."""
+"""Writes npz files, and reads those of anybody: no more than such a file may hold."""
 
+import contextlib
 import os
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
 import numpy as np
 
-from yehu_server.errors import ScoreError
-from yehu_server.util.files import error_reason, open_regular
+from yehu_server.errors import OutputError, ScoreError
+from yehu_server.util.files import (
+    error_reason,
+    open_regular,
+    replace_any,
+    replace_none,
+    replacing,
+)
 
 T = TypeVar("T")
 
@@ -32,6 +39,21 @@ def read_npz(path: Path, build: Callable[[dict[str, Any]], T], what: str) -> T:
         raise ScoreError(f"{path}: {error_reason(error)}") from error
     except Exception as error:  # damaged archives raise whatever they lead to
         raise ScoreError(f"{path}: is not {what}") from error
+
+
+def check_npz(target: Path) -> None:
+    """Raise OutputError where the ending of a file is that of another kind."""
+    if target.suffix.lower() not in ("", ".npz"):
+        raise OutputError(f"{target}: arrays are written; name an .npz file")
+
+
+@contextlib.contextmanager
+def writing_npz(target: Path, *, overwrite: bool) -> Iterator[BinaryIO]:
+    """Open a file to write, as `replacing` does; raises OutputError as that and `check_npz`."""
+    check_npz(target)
+    may_replace = replace_any if overwrite else replace_none
+    with replacing(target, may_replace) as partial, partial.open("wb") as file:
+        yield file
 
 
 def _check_sizes(file: BinaryIO) -> None:

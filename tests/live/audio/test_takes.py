@@ -123,7 +123,7 @@ def test_older_takes_are_refused_before_anything_else(make_live, tmp_path):
     for name in ("record", "capture"):
         older = tmp_path / f"{name}.wav"
         older.write_text("older")
-        with pytest.raises(OutputError, match=rf"{name}\.wav: exists; --overwrite replaces it"):
+        with pytest.raises(OutputError, match=rf"{name}\.wav: exists; --overwrite"):
             make_live(**{name: older})
         assert older.read_text() == "older"
     live = make_live(record=tmp_path / "record.wav", overwrite=True)

@@ -166,6 +166,30 @@ def test_a_wrong_message_is_logged_once_for_each_address_and_few_a_minute(still,
     assert len(still.services.said) <= limits.LOGGED_ERRORS_AT_ONCE + 6
 
 
+def test_the_last_errors_that_were_not_logged_are_counted_later_and_at_the_end(still, wire):
+    told = []
+    for count, pause_s, is_end in (
+        (4, 1.0, False),
+        (0, 1.1, False),
+        (1, 3.0, False),
+        (2, 3.0, False),
+        (1, 0.0, True),
+    ):
+        for _ in range(count):
+            still.take(wire.message("/yehu/nots", 67.0, 90.0))
+        still.handler.context.last_error_s -= pause_s
+        if is_end:
+            still.handler.context.count_errors(is_end=True)
+        list(still.handler.due())
+        told += still.services.said[1 + len(told) :]
+    assert told == [f"OSC: {n} errors after the last one not shown" for n in (3, 6, 7)]
+
+
+def test_an_address_without_its_slash_is_named_with_it(still):
+    (refused,) = still.ask("/get", "playing/vibrato")
+    assert refused.arguments[1].startswith("/yehu/playing/vibrato: ")
+
+
 def test_who_plays_beyond_the_range_is_told_once_what_sounds(still):
     for call, told in [
         (("/pitch", 30.0), "30 is outside F4 to F6; the finger goes to 65"),

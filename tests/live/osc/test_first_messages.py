@@ -14,7 +14,7 @@ def test_the_five_messages_begin_move_and_end_a_note(still, name):
     block = next(each for each in page(name).blocks("") if each.startswith("/yehu"))
     lines = [line.partition("   ")[0].split() for line in block.splitlines()]
     messages = [(line[0].removeprefix("/yehu"), *map(number, line[1:])) for line in lines]
-    sounding = [None, 67.0, 69.0, 69.0, None]
+    sounding = [None, 67.0, 71.0, 71.0, None]
     for message, pitch in zip(messages, sounding, strict=True):
         still.send(*message)
         heard = still.pass_time(0.5)

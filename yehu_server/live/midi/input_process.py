@@ -80,6 +80,7 @@ class Inputs:
         self._problem = ""
         self._refused: dict[str, float] = {}  # when ports could not be opened, s
         self._sought: set[str] = set(self._patterns)  # those that no port has matched yet
+        self._unused: set[str] | None = None  # ports that no name matches; None before a poll
         self._awake_s = time.monotonic()
 
     @property
@@ -110,6 +111,7 @@ class Inputs:
             if name not in self._open and is_due and is_wanted:
                 self._add(self._system, name, full_name)
         self._report_missing(stable)
+        self._report_unused(stable)
         self._measure_pause()  # opening a port takes long, while others are heard
 
     def _report_missing(self, names: Iterable[str]) -> None:
@@ -119,6 +121,14 @@ class Inputs:
             if not any(matches(name, pattern) for name in present):
                 self._parent.send("missing", pattern=pattern, present=present)
         self._sought.clear()
+
+    def _report_unused(self, names: Iterable[str]) -> None:
+        """Report ports that were connected since the first poll, and that no pattern matches."""
+        unused = {name for name in names if is_opened(name, (), others=True)} - {*self._open}
+        unused -= {*self._refused}
+        for name in () if self._unused is None else sorted(unused - self._unused):
+            self._parent.send("unused", port=name)
+        self._unused = unused
 
     def sense(self) -> None:
         """See `Input.sense`. After a stop of this process, whose messages are lost, notes end."""

@@ -125,6 +125,10 @@ class MidiInputs(Supervisor):
             self._on_message(f"MIDI: inputs were not read for {seconds:.1f} s; notes are ended")
         elif kind == "missing":
             self._report_missing(event["pattern"], event["present"])
+        elif kind == "unused":
+            asked = {"--midi-in": self._options.patterns, "--part": self._router.patterns}
+            why = " and ".join(f"{by} names {', '.join(of)}" for by, of in asked.items() if of)
+            self._on_message(f"MIDI: {event['port']} is connected, but plays nothing: {why}")
         elif kind == "refused":
             self._on_message(f"MIDI: {event['port']} cannot be opened: {event['reason']}")
         elif kind == "none":

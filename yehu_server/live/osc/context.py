@@ -52,6 +52,8 @@ class CallContext:
     # Who was told, and at which address, that its values are outside the range.
     told: set[tuple[Peer, str]] = field(default_factory=set)
     unlogged: int = 0  # errors since the last that was logged
+    counted: int = 0  # of these, as many as a line has told
+    last_error_s: float = 0.0  # monotonic
     logged_errors: TokenBucket = field(
         default_factory=lambda: TokenBucket(
             limits.LOGGED_ERRORS_A_SECOND, limits.LOGGED_ERRORS_AT_ONCE
@@ -83,14 +85,26 @@ class CallContext:
     def report_error(self, peer: Peer, address: str, reason: str | Callable[[], str]) -> None:
         """The same for what is counted elsewhere; `address` may be empty, where none was read."""
         self.unlogged += 1
+        self.last_error_s = time.monotonic()
         if self._is_new_error(address):
             reason = reason if isinstance(reason, str) else reason()
             hidden = self.unlogged - 1
-            more = f" ({hidden} error{'s' * (hidden > 1)} before it not shown)" * (hidden > 0)
+            more = f" ({_errors(hidden)} before it not shown)" * (hidden > 0)
             what = f"{shortened(address)}: {shortened(reason)}" if address else shortened(reason)
             self.log(f"OSC from {peer.host}: {what}{more}")
-            self.unlogged = 0
+            self.unlogged = self.counted = 0
         self.clients.send_error(peer, address, reason)
+
+    def count_errors(self, *, is_end: bool = False) -> None:
+        """Log how many errors were not, once none has come for a while, or at the end.
+
+        Who sends wrong messages now and then is told of twice as many each time.
+        """
+        is_quiet = time.monotonic() - self.last_error_s >= limits.ERRORS_COUNTED_AFTER_S
+        is_due = is_end or (is_quiet and self.unlogged >= 2 * self.counted)
+        if is_due and self.unlogged > self.counted:
+            self.counted = self.unlogged
+            self.log(f"OSC: {_errors(self.unlogged)} after the last one not shown")
 
     def _is_new_error(self, address: str) -> bool:
         """Whether to log an error at an address: once for each, and few of all.
@@ -120,6 +134,10 @@ class CallContext:
         for one in self.players:
             if one.mapping == before:
                 one.remap(mapping, frame=one.frame_of())
+
+
+def _errors(count: int) -> str:
+    return f"{count} error{'s' * (count > 1)}"
 
 
 class GroupCalls:

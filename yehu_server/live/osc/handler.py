@@ -136,6 +136,7 @@ class OscHandler:
 
     def due(self) -> Iterator[tuple[Iterator[None], Peer, int]]:
         """What is to be done for messages whose time has come: steps, sender and size of each."""
+        self.context.count_errors()
         # Early enough to be there when the device asks for their frames.
         self._schedule.ahead_s = AHEAD_S + self._players[0].delay / self._players[0].instrument.rate
         for _ in range(DUE_AT_ONCE):

@@ -28,7 +28,7 @@ class ServerCalls(GroupCalls):
         elif PREFIX + wanted in self._context.addresses:
             raise RefusedError(f"{PREFIX}{wanted} has no value")
         else:
-            asked, readable_ones = PREFIX + wanted, [PREFIX + one for one in known]
+            asked, readable_ones = f"{PREFIX}/{wanted.lstrip('/')}", [PREFIX + one for one in known]
             raise RefusedError(f"{asked[:PATTERN]}: {unknown(asked, parts, readable_ones)}")
         call.check_peer()
         read_topic = cache(self._clients.read)

@@ -140,7 +140,7 @@ class Mark(NamedTuple):
 NO_NAMES = frozenset[str]()
 
 
-@lru_cache
+@lru_cache(maxsize=4096)
 def _names_of(marks: tuple[Mark, ...]) -> frozenset[str]:
     return frozenset(mark.name for mark in marks)
 
@@ -199,7 +199,7 @@ class Note(NamedTuple):
         """The beat from which a fermata holds it, if it has one."""
         mark = self.marked("fermata")
         late = mark.second if mark is not None else None
-        return self.beat + Fraction(late or 0).limit_denominator(5040)
+        return self.beat + Fraction(late).limit_denominator(5040) if late else self.beat
 
     def marks_at(self, beat: Fraction) -> list[Mark]:
         """The marks to be written where it begins, or at what it is tied to."""
@@ -252,6 +252,11 @@ class Part:
     def begins_at(self) -> list[float]:
         """The beats at which its notes begin, as floats."""
         return [note.begins_at for note in self.notes]
+
+    @cached_property
+    def names(self) -> list[frozenset[str]]:
+        """The names of its notes' marks."""
+        return [_names_of(note.marks) if note.marks else NO_NAMES for note in self.notes]
 
     @cached_property
     def ends_at(self) -> list[float]:

@@ -87,9 +87,10 @@ class WrittenClock:
         at = max(bisect_right(self._seconds, seconds) - 1, 0)
         return self._beats[at] + (seconds - self._seconds[at]) / self._rates[at]
 
-    def quarter_s(self, beat: Fraction | float) -> float:
-        """The length of a quarter note (s) at a beat."""
-        return self._rates[self._at(float(beat))]
+    def quarters_of(self, beats: Array) -> Array:
+        """The lengths of quarter notes (s) at beats [shape=(beats,)]."""
+        since, _, rates = self._columns
+        return rates[np.maximum(np.searchsorted(since, beats, side="right") - 1, 0)]
 
     def _at(self, beat: float) -> int:
         return max(bisect_right(self._beats, beat) - 1, 0)

@@ -62,12 +62,20 @@ def around_letter(
 
     `alter_of` is the accidental that holds for a letter in an octave, by the bar or the key.
     """
+    at = LETTERS.index(letter)
+    alters = [alter_of(LETTERS[to % 7], octave + to // 7) for to in (at - 1, at + 1)]
+    return _around_step(at, alter, *alters)
+
+
+@lru_cache(maxsize=4096)
+def _around_step(at: int, alter: float, below: float, above: float) -> Around:
+    """The intervals from a letter to its neighbours, by their accidentals."""
+    alters = {at - 1: below, at + 1: above}
 
     def pitch_of(degree: int) -> float:
-        octaves, at = divmod(degree, 7)
-        return 12.0 * octaves + STEPS[at] + alter_of(LETTERS[at], octave + octaves)
+        octaves, to = divmod(degree, 7)
+        return 12.0 * octaves + STEPS[to] + alters[degree]
 
-    at = LETTERS.index(letter)
     return around(at, STEPS[at] + alter, pitch_of)
 
 

@@ -1,0 +1,38 @@
+"""Beats as readers count them: in whole ticks, which are added far sooner than fractions are.
+
+What is no whole number of ticks stays a fraction of them, so that all beats are exact.
+"""
+
+from fractions import Fraction
+from functools import lru_cache
+
+TICKS = 2**9 * 3**2 * 5**2 * 7 * 11  # of a quarter note
+FINEST = 1 << 24  # the smallest part of a quarter note is this one
+
+Ticks = int | Fraction
+
+
+def ticks_of(quarters: Fraction) -> Ticks:
+    """Quarters as ticks."""
+    return scaled(TICKS, quarters)
+
+
+def scaled(ticks: Ticks, factor: Fraction) -> Ticks:
+    """So many times as many ticks."""
+    whole, rest = divmod(ticks * factor.numerator, factor.denominator)
+    return ticks * factor if rest else whole
+
+
+def quarters_of(ticks: Ticks) -> Fraction:
+    """Ticks as quarters."""
+    return Fraction(ticks, TICKS)
+
+
+length_of = lru_cache(maxsize=4096)(quarters_of)  # for lengths, most of which are alike
+
+
+def bounded(ticks: Ticks) -> Ticks:
+    """The nearest beat that is no finer than FINEST."""
+    if isinstance(ticks, int):
+        return ticks
+    return ticks_of(quarters_of(ticks).limit_denominator(FINEST))

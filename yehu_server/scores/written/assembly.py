@@ -11,7 +11,7 @@ from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Bar, Part, Tempo, Written
 from yehu_server.scores.written.repeats import BarLines, left_out, order_of
-from yehu_server.scores.written.ticks import TICKS, Ticks, bounded, quarters_of
+from yehu_server.scores.written.ticks import TICKS, Ticks, bounded, metre_at, quarters_of
 from yehu_server.scores.written.voices import RawBar, parts_of
 
 MAX_KINDS = 100  # of unknown marks that are named
@@ -152,16 +152,12 @@ def _metres(bars: list[RawBar], played: list[tuple[int, Ticks]]) -> list[Metre]:
     for number, begin in played:
         metre = holding[number] if number < len(holding) else None
         if metre is not None and float(metre / TICKS) != metres[-1].quarters:
-            metres.append(_metre(begin, metre))
+            metres.append(metre_at(begin, metre))
     if bars and played and len(played) > 1 and played[0][0] == 0:
         metre = holding[0] or 4 * TICKS
         upbeat = played[1][1]
         if upbeat < metre:  # bars are counted from the first whole one
-            metres.insert(1, _metre(0, metre))
-            metres.append(_metre(upbeat, holding[min(1, len(bars) - 1)] or metre))
+            metres.insert(1, metre_at(0, metre))
+            metres.append(metre_at(upbeat, holding[min(1, len(bars) - 1)] or metre))
             metres.sort(key=lambda metre: metre.beat)
     return metres
-
-
-def _metre(begin: Ticks, length: Ticks) -> Metre:
-    return Metre(float(begin / TICKS), float(length / TICKS))

@@ -8,7 +8,7 @@ notes since the beginning, exact, with all repeats unfolded. Pitches are MIDI no
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -184,15 +184,6 @@ class Note(NamedTuple):
         beat, length = self.beat, self.length
         under, its_under = beat.denominator, length.denominator
         return (beat.numerator * its_under + length.numerator * under) / (under * its_under)
-
-    def longer(self, by: Fraction, more: Iterable[Mark], late: Fraction) -> Note:
-        """The same note, held on with more marks; a fermata of them begins `late` in it."""
-        marks = [
-            mark._replace(second=float(late) or None) if mark.name == "fermata" else mark
-            for mark in more
-            if self.marked(mark.name) is None
-        ]
-        return self._replace(length=self.length + by, marks=(*self.marks, *marks))
 
     @property
     def held_from(self) -> Fraction:

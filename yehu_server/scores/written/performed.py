@@ -93,10 +93,10 @@ def performed(
     )
 
 
-def shortest_s(written: Written) -> float:
+def shortest_s(written: Written, clock: WrittenClock) -> float:
     """The length (s) of the shortest part, as written: none is played in less."""
     ends = [part.notes[-1].end for part in written.parts if part.notes]
-    return WrittenClock(written).seconds(min(ends, default=0))
+    return clock.seconds(min(ends, default=0))
 
 
 def leading_notes(part: Part, clock: WrittenClock) -> NoteColumns:

@@ -2,10 +2,9 @@
 
 from bisect import bisect_right
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
-from itertools import accumulate, pairwise
-from typing import Any
+from itertools import accumulate
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,12 +19,12 @@ WAIT = Fraction(1)  # quarters of a rest that its fermata stretches
 CAESURA_S = 0.4
 BRIEF = Fraction(1, 4)  # quarters before a caesura, which take so much longer
 SLOWER, FASTER = 0.7, 1.25  # at the end of ritardando and accelerando
+HOLDING = {"fermata", "caesura"}  # marks
 STEPS = 64  # at most, in a change of tempo
 SHORTEST_STEP = Fraction(1, 4)
 
 
-@dataclass(frozen=True)
-class Stretch:
+class Stretch(NamedTuple):
     """Beats that take `factor` times as long, and `more_s` a quarter on top."""
 
     begin: float
@@ -41,17 +40,16 @@ class WrittenClock:
         stretches = list(_stretches(written))
         tempi = _with_changes(written)
         starts = [float(tempo.beat) for tempo in tempi]
-        beats = {0.0, *starts, *(beat for each in stretches for beat in (each.begin, each.end))}
-        self._beats = sorted(beat for beat in beats if beat >= 0.0)
-        rates = []  # seconds a quarter
-        for beat in self._beats:
-            at = bisect_right(starts, beat) - 1
-            quarters = tempi[at].quarters_per_minute if at >= 0 else notated.DEFAULT_TEMPO
-            rates.append(60.0 / min(max(quarters, notated.LOWEST_TEMPO), notated.HIGHEST_TEMPO))
-        self._rates = self._stretched(rates, stretches)
-        self._seconds = [0.0]
-        for (beat, after), rate in zip(pairwise(self._beats), self._rates, strict=False):
-            self._seconds.append(self._seconds[-1] + (after - beat) * rate)
+        ends = [beat for begin, end, *_ in stretches for beat in (begin, end)]
+        beats = np.unique([0.0, *starts, *ends])
+        beats = beats[beats >= 0.0]
+        quarters = np.array([notated.DEFAULT_TEMPO, *(each.quarters_per_minute for each in tempi)])
+        held = np.clip(quarters, notated.LOWEST_TEMPO, notated.HIGHEST_TEMPO)
+        rates = 60.0 / held[np.searchsorted(starts, beats, side="right")]  # seconds a quarter
+        self._beats: list[float] = beats.tolist()
+        self._rates = self._stretched(rates.tolist(), stretches)
+        lengths_s = np.diff(beats) * self._rates[:-1]
+        self._seconds: list[float] = [0.0, *np.cumsum(lengths_s).tolist()]
         self._columns = tuple(map(np.array, (self._beats, self._seconds, self._rates)))
 
     def _stretched(self, rates: list[float], stretches: list[Stretch]) -> list[float]:
@@ -103,15 +101,14 @@ class WrittenClock:
 
 def _stretches(written: Written) -> Iterator[Stretch]:
     for part in written.parts:
-        for note in part.notes:
-            if not note.marks:
+        for note, names in zip(part.notes, part.names, strict=True):
+            if HOLDING.isdisjoint(names):
                 continue
             fermata, caesura = note.marked("fermata"), note.marked("caesura")
-            if fermata or caesura:
-                factor = 1.0 if fermata is None else _held(fermata.value)
-                begin = note.held_from
-                more_s = 0.0 if caesura is None else CAESURA_S / float(note.end - begin)
-                yield Stretch(float(begin), note.ends_at, factor, more_s)
+            factor = 1.0 if fermata is None else _held(fermata.value)
+            begin = note.held_from
+            more_s = 0.0 if caesura is None else CAESURA_S / float(note.end - begin)
+            yield Stretch(float(begin), note.ends_at, factor, more_s)
         for sign in part.signs:
             if sign.name == "fermata":
                 yield Stretch(float(sign.beat), float(sign.beat + WAIT), _held(sign.value))

@@ -6,6 +6,8 @@ What is no whole number of ticks stays a fraction of them, so that all beats are
 from fractions import Fraction
 from functools import lru_cache
 
+from yehu_server.scores.score import Metre
+
 TICKS = 2**9 * 3**2 * 5**2 * 7 * 11  # of a quarter note
 FINEST = 1 << 24  # the smallest part of a quarter note is this one
 
@@ -29,6 +31,11 @@ def quarters_of(ticks: Ticks) -> Fraction:
 
 
 length_of = lru_cache(maxsize=4096)(quarters_of)  # for lengths, most of which are alike
+
+
+def metre_at(begin: Ticks, length: Ticks) -> Metre:
+    """A metre from a beat on, whose bars are so long."""
+    return Metre(float(begin / TICKS), float(length / TICKS))
 
 
 def bounded(ticks: Ticks) -> Ticks:

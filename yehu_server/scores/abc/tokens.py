@@ -9,6 +9,7 @@ LENGTH = r"\d*/*\d*"
 NOTE = rf"(\^\^|\^|__|_|=)?([A-Ga-g])([',]*)({LENGTH})(-?)"
 TOKEN = re.compile(
     rf"""(?P<note>{NOTE})
+|(?P<space>[\s`*$\\]+)
 |(?P<field>\[[A-Za-z]:[^\]]{{0,255}}\])
 |(?P<bar>\.?(?::*\[?\|[|\]]*:*|::+))(?P<number>(?<!:)[1-9][\d,\-]*)?
 |(?P<ending>\[[1-9][\d,\-]*)
@@ -24,7 +25,7 @@ TOKEN = re.compile(
 |(?P<broken>>+|<+)
 |(?P<short>[.~H-Yh-w])
 |(?P<over>&)
-|(?P<space>[\s`*$\\]+|y\d*|!)
+|(?P<nothing>y\d*|!)
 |(?P<other>.)""",
     re.VERBOSE,
 )
@@ -43,7 +44,7 @@ def token_of(text: str) -> tuple[str, tuple[Any, ...]]:  # noqa: PLR0911
     found = TOKEN.match(text)
     last = (found and found.lastgroup) or ""
     kind = KINDS.get(last, last)
-    if found is None or kind in ("", "space"):
+    if found is None or kind in ("space", "nothing"):
         return "", ()
     if kind == "note":
         return kind, _note_of(found, 1)

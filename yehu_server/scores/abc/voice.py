@@ -159,8 +159,9 @@ class VoiceReader:
 
     def _around(self) -> Around:
         """The intervals to the neighbours of the last note, for its ornaments."""
-        if self._marks and any(mark.name in WAYS for mark in self._marks):
-            return around_letter(*self._place, self._alter_of)
+        for mark in self._marks:
+            if mark.name in WAYS:
+                return around_letter(*self._place, self._alter_of)
         return WHOLE_AND_HALF
 
     def _reached(self, name: str, octave: int) -> str | tuple[str, int]:

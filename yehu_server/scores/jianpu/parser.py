@@ -5,7 +5,6 @@ from collections import Counter
 from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
-from operator import itemgetter
 
 from yehu_server.scores.jianpu.form import (
     JUMPS,
@@ -189,7 +188,8 @@ class PartParser:
     ) -> None:
         single = len(figures) == 1
         pitches = [self.scale.pitch(figure, word, shifted=single) for figure in figures]
-        element.pitch, self._figure = max(zip(pitches, figures, strict=True), key=itemgetter(0))
+        element.pitch = max(pitches)
+        self._figure = figures[pitches.index(element.pitch)]
         if tremolo and len(figures) == 2:
             element.pitch, element.other = pitches
         elif tremolo:

@@ -37,7 +37,9 @@ def moved_part(part: Part, within: NoteRange = YEHU) -> tuple[Part, Octaves]:
         return part, octaves
     moves = (12.0 * octaves.of_notes).tolist()
     notes = tuple(_moved(note, by) for note, by in zip(part.notes, moves, strict=True))
-    return replace(part, notes=notes), octaves
+    found = replace(part, notes=notes)
+    vars(found).update(begins_at=part.begins_at, ends_at=part.ends_at, names=part.names)
+    return found, octaves
 
 
 def moved(written: Written, plays: Sequence[int], within: NoteRange = YEHU) -> tuple[Written, str]:
@@ -93,7 +95,7 @@ def _pitches(note: Note, names: frozenset[str], within: NoteRange) -> tuple[floa
 def _moved(note: Note, by: float) -> Note:
     pitch = note.pitch + by
     if not (note.before or note.after):
-        return note._replace(pitch=pitch)
+        return Note(note.beat, note.length, pitch, note.marks, contour=note.contour)
     before, after = (
         tuple(grace._replace(pitch=grace.pitch + by) for grace in graces)
         for graces in (note.before, note.after)

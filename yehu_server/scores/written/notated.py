@@ -242,7 +242,7 @@ class Part:
     @cached_property
     def begins_at(self) -> list[float]:
         """The beats at which its notes begin, as floats."""
-        return [note.begins_at for note in self.notes]
+        return [note.beat.numerator / note.beat.denominator for note in self.notes]
 
     @cached_property
     def names(self) -> list[frozenset[str]]:

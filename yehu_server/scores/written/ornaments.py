@@ -107,6 +107,8 @@ def _filled(mark: Mark, intervals: Around) -> Mark:
 
 def touches_of(note: Note, begin_s: float, end_s: float) -> list[Touch]:
     """Return the touches of a note, its own among them, in the order of their beginnings."""
+    if not (note.before or note.after):
+        return _ornamented(note, begin_s, end_s)
     length_s = end_s - begin_s
     before = _graces(note.before, begin_s, length_s)
     after = _graces(note.after, end_s, length_s, backwards=True)
@@ -187,8 +189,8 @@ def curves_of(notes: Iterable[tuple[Note, float, float]]) -> list[Curve]:
     for number, (note, begin_s, end_s) in enumerate(notes):
         curves.append([])
         length_s = end_s - begin_s
-        points = _points_of(note, begin_s, end_s) if length_s > LAST_S else []
-        if points:
+        may_move = (note.contour or note.marks) and length_s > LAST_S
+        if may_move and (points := _points_of(note, begin_s, end_s)):
             count = min(max(int(length_s / STEP_S), 1), MAX_POINTS)
             alike[len(points), count].append((number, begin_s, end_s, points))
     for (_, count), same in alike.items():

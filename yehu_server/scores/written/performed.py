@@ -102,7 +102,8 @@ def shortest_s(written: Written, clock: WrittenClock) -> float:
 def leading_notes(part: Part, clock: WrittenClock) -> NoteColumns:
     """A part's notes as written, which all follow, but as long as fermatas have them."""
     begins, ends = np.array(part.begins_at), np.array(part.ends_at)
-    keys, none = np.array([_key_of(note.pitch) for note in part.notes]), np.zeros(len(begins))
+    pitches, none = np.array([note.pitch for note in part.notes], float), np.zeros(len(begins))
+    keys = np.clip(np.floor(pitches + 0.5), 0, HIGHEST_KEY).astype(np.int64)
     times_s = clock.seconds_of(begins), clock.seconds_of(ends)
     return NoteColumns(none - 1, none - 1, none, keys, none, *times_s, begins, none)
 
@@ -208,7 +209,14 @@ class _Performer:
                 self._swell(loudness, first, played[first : first + BLOCK])
             curves = curves_of(each[:3] for each, *_ in block)
             for place, (row, curve) in enumerate(zip(block, curves, strict=True), first):
-                self._play(*row, place, curve)
+                (note, begin_s, end_s, direction, slide_s), active, velocity, _ = row
+                _, _, pitch, marks, before, after, contour = note
+                is_plain = not (marks or before or after or contour or direction or slide_s)
+                key = _key_of(pitch)
+                if is_plain and key == pitch and not self._set and active == PLAIN:
+                    self._touches.append((begin_s, end_s, key, velocity, place))
+                else:
+                    self._play(*row, place, curve)
             self._moves.check(2 * len(self._touches) + len(rows))
         last_s = max(each.end_s for each in played) + LAST_S
         self._put_back(last_s, len(played), part.ends_at[-1], {})
@@ -226,12 +234,6 @@ class _Performer:
         curve: Curve,
     ) -> None:
         note, begin_s, end_s, direction, slide_s = played
-        _, _, pitch, marks, before, after, contour = note
-        if not (marks or before or after or contour or direction or slide_s or self._set):
-            key = math.floor(pitch + 0.5)
-            if 0 <= key == pitch <= HIGHEST_KEY and active == PLAIN:
-                self._touches.append((begin_s, end_s, key, velocity, place))
-                return
         manner = self._manner(note, active, quarter_s)
         beat = self._part.begins_at[place]
         values, pitch = manner.values, manner.pitch
@@ -248,7 +250,8 @@ class _Performer:
                 values[BEND] = pitch - key + (curve[0][1] if curve else 0.0)
         if values or self._set:
             self._put_back(begin_s, place, beat, values)
-        self._moves.left.update(manner.left)
+        if manner.left:
+            self._moves.left.update(manner.left)
         sounding = note if pitch == note.pitch else note._replace(pitch=pitch)
         touches = touches_of(sounding, begin_s, end_s)
         if manner.slides_in and len(touches) > 1:  # the first of them slides

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from yehu_server.scores.written import notated
-from yehu_server.scores.written.notated import Span, Tempo, Written
+from yehu_server.scores.written.notated import Span, Written
+from yehu_server.scores.written.ticks import TICKS, Ticks, scaled, ticks_of
 
 Array = Any
 
@@ -21,7 +22,7 @@ BRIEF = Fraction(1, 4)  # quarters before a caesura, which take so much longer
 SLOWER, FASTER = 0.7, 1.25  # at the end of ritardando and accelerando
 HOLDING = {"fermata", "caesura"}  # marks
 STEPS = 64  # at most, in a change of tempo
-SHORTEST_STEP = Fraction(1, 4)
+SHORTEST_STEP = TICKS // 4
 
 
 class Stretch(NamedTuple):
@@ -39,11 +40,11 @@ class WrittenClock:
     def __init__(self, written: Written) -> None:
         stretches = list(_stretches(written))
         tempi = _with_changes(written)
-        starts = [float(tempo.beat) for tempo in tempi]
+        starts = [beat for beat, _ in tempi]
         ends = [beat for begin, end, *_ in stretches for beat in (begin, end)]
         beats = np.unique([0.0, *starts, *ends])
         beats = beats[beats >= 0.0]
-        quarters = np.array([notated.DEFAULT_TEMPO, *(each.quarters_per_minute for each in tempi)])
+        quarters = np.array([notated.DEFAULT_TEMPO, *(each for _, each in tempi)])
         held = np.clip(quarters, notated.LOWEST_TEMPO, notated.HIGHEST_TEMPO)
         rates = 60.0 / held[np.searchsorted(starts, beats, side="right")]  # seconds a quarter
         self._beats: list[float] = beats.tolist()
@@ -122,30 +123,29 @@ def _held(factor: float | None) -> float:
     return min(max(factor or HELD, 1.0), LONGEST_HELD)
 
 
-def _with_changes(written: Written) -> list[Tempo]:
-    """The tempi in order, with ritardandos and accelerandos as steps."""
-    tempi = sorted(written.tempi, key=lambda tempo: tempo.beat)
-    starts = [tempo.beat for tempo in tempi]
+def _with_changes(written: Written) -> list[tuple[float, float]]:
+    """The tempi and their beats in order, with ritardandos and accelerandos as steps."""
+    tempi = sorted((ticks_of(beat), quarters) for beat, quarters in written.tempi)
+    starts = [beat for beat, _ in tempi]
     spans = {
-        (span.name, span.begin, span.end): span
+        (span.name, ticks_of(span.begin), ticks_of(span.end)): span
         for part in written.parts
         for span in part.spans
         if span.name in ("ritardando", "accelerando") and span.end > span.begin
     }
-    steps: dict[Fraction, float] = {}
-    for span in sorted(spans.values(), key=lambda span: span.begin):
-        at = bisect_right(starts, span.begin) - 1
-        before = tempi[at].quarters_per_minute if at >= 0 else notated.DEFAULT_TEMPO
-        steps |= _steps(span, before)
+    steps: dict[Ticks, float] = {}
+    for (_, begin, end), span in sorted(spans.items(), key=lambda each: each[0][1]):
+        at = bisect_right(starts, begin) - 1
+        before = tempi[at][1] if at >= 0 else notated.DEFAULT_TEMPO
+        steps |= _steps(span, begin, end - begin, before)
     # At the end of the change the next tempo holds, where one is written there.
-    steps |= {tempo.beat: tempo.quarters_per_minute for tempo in tempi}
-    return [Tempo(beat, quarters) for beat, quarters in sorted(steps.items())]
+    steps |= tempi
+    return [(float(beat / TICKS), quarters) for beat, quarters in sorted(steps.items())]
 
 
-def _steps(span: Span, before: float) -> dict[Fraction, float]:
-    length = span.end - span.begin
-    count = min(max(int(length / SHORTEST_STEP), 1), STEPS)
+def _steps(span: Span, begin: Ticks, length: Ticks, before: float) -> dict[Ticks, float]:
+    count = min(max(int(length // SHORTEST_STEP), 1), STEPS)
     last = span.value or (SLOWER if span.name == "ritardando" else FASTER)
     last = min(max(last, 1.0 / LONGEST_HELD), LONGEST_HELD)
-    beats = accumulate([length / count] * count, initial=span.begin)
+    beats = accumulate([scaled(length, Fraction(1, count))] * count, initial=begin)
     return {beat: before * (1.0 + (last - 1.0) * step / count) for step, beat in enumerate(beats)}

@@ -17,7 +17,7 @@ from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
 from yehu_server.scores.written.ornaments import HALF, WAYS, WHOLE, Around, around_letter
 from yehu_server.scores.written.repeats import MAX_BARS, MAX_TIMES, BarLines
 from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
-from yehu_server.scores.written.ticks import TICKS, Ticks, scaled, ticks_of
+from yehu_server.scores.written.ticks import TICKS, Ticks, bounded, scaled, ticks_of
 from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
@@ -195,7 +195,7 @@ class VoiceReader:
             length, self._next_factor = scaled(length, self._next_factor), ONE
         length = min(length, LONGEST * TICKS)
         at = self._at
-        self._last, self._last_begin, self._at = [], at, at + length
+        self._last, self._last_begin, self._at = [], at, bounded(at + length)
         if pitch is None:
             return
         note = RawNote(at, length, pitch, VOICE, self._marks, around, ends=self._starts)

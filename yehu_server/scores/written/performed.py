@@ -350,4 +350,5 @@ class _Performer:
 
 
 def _key_of(pitch: float) -> int:
-    return min(max(math.floor(pitch + 0.5), 0), HIGHEST_KEY)
+    key = math.floor(pitch + 0.5)
+    return key if 0 <= key <= HIGHEST_KEY else min(max(key, 0), HIGHEST_KEY)

@@ -9,7 +9,7 @@ from functools import lru_cache
 from yehu_server.scores.score import Metre
 
 TICKS = 2**9 * 3**2 * 5**2 * 7 * 11  # of a quarter note
-FINEST = 1 << 24  # the smallest part of a quarter note is this one
+FINEST = 1 << 24  # the smallest part of a tick is this one
 
 Ticks = int | Fraction
 
@@ -39,7 +39,5 @@ def metre_at(begin: Ticks, length: Ticks) -> Metre:
 
 
 def bounded(ticks: Ticks) -> Ticks:
-    """The nearest beat that is no finer than FINEST."""
-    if isinstance(ticks, int):
-        return ticks
-    return ticks_of(quarters_of(ticks).limit_denominator(FINEST))
+    """A beat that is no finer than FINEST: fractions of many kinds together would grow on."""
+    return ticks if ticks.denominator <= FINEST else round(ticks)

@@ -40,4 +40,4 @@ def metre_at(begin: Ticks, length: Ticks) -> Metre:
 
 def bounded(ticks: Ticks) -> Ticks:
     """A beat that is no finer than FINEST: fractions of many kinds together would grow on."""
-    return ticks if ticks.denominator <= FINEST else round(ticks)
+    return ticks if ticks.denominator <= FINEST else Fraction(round(ticks * FINEST), FINEST)

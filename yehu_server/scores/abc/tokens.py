@@ -29,6 +29,9 @@ TOKEN = re.compile(
 |(?P<other>.)""",
     re.VERBOSE,
 )
+# The same without groups: only texts are found, in half the time.
+GROUP = re.compile(r"\(\?P<\w+>|(?<!\\)\((?![?)])")
+TOKENS = re.compile(GROUP.sub("(?:", TOKEN.pattern), re.VERBOSE)
 # The kind of a token by the last group that is in it, where that is not its own.
 KINDS = {
     "number": "bar", "chord_length": "chord", "chord_tie": "chord", "rest_length": "rest",

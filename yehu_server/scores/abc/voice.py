@@ -10,7 +10,7 @@ from functools import lru_cache
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores.abc import fields, keywords
 from yehu_server.scores.abc.keys import key_of, properties_of
-from yehu_server.scores.abc.tokens import TOKEN, NoteToken, multiple_of, notes_in, token_of
+from yehu_server.scores.abc.tokens import TOKENS, NoteToken, multiple_of, notes_in, token_of
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
@@ -27,6 +27,7 @@ MAX_BARS_REST = 1000
 ENDS_OVERLAY, TIED = {"bar", "ending"}, frozenset({"start"})
 ONE, GRACE = Fraction(1), TICKS // 4
 VOICE = "1", "1"
+MARKS = {name: Mark(*found) for name, found in keywords.DECORATIONS.items()}
 WHOLE_AND_HALF = WHOLE, HALF
 
 
@@ -126,8 +127,7 @@ class VoiceReader:
     def line(self, text: str, inline: Callable[[str, str], VoiceReader]) -> None:
         """Read a line of music; `inline` takes fields within it and returns who reads on."""
         reader = self
-        for found in TOKEN.finditer(text):
-            kind, values = token_of(found[0])
+        for kind, values in map(token_of, TOKENS.findall(text)):
             if kind == "field":
                 reader = inline(*values)
             elif kind and (kind in ENDS_OVERLAY or not reader._in_overlay):  # noqa: SLF001
@@ -277,7 +277,7 @@ class VoiceReader:
 
     def _sign(self, name: str) -> None:
         if name in keywords.DECORATIONS:
-            self._marks.append(Mark(*keywords.DECORATIONS[name]))
+            self._marks.append(MARKS[name])
         elif name in DYNAMICS or name in FORCED:
             self._direct("sign", name)
         elif name in keywords.WEDGES:

@@ -179,18 +179,19 @@ def _trill(begin_s: float, length_s: float, pitch: float) -> list[Touch]:
     ]
 
 
-def curves_of(notes: Iterable[tuple[Note, float, float]]) -> list[Curve]:
-    """The semitones from notes' pitches at seconds, from their beginnings on; none where they stay.
+def curves_of(notes: Iterable[tuple[Note, float, float]]) -> dict[int, Curve]:
+    """The semitones from notes' pitches at seconds, from their beginnings on, of those that move.
 
-    Each note comes with the seconds of its beginning and its end.
+    Each note comes with the seconds of its beginning and its end; a curve, by the note's number.
     """
-    curves: list[Curve] = []
+    curves: dict[int, Curve] = {}
     alike: dict[tuple[int, int], list[tuple[int, float, float, Curve]]] = defaultdict(list)
     for number, (note, begin_s, end_s) in enumerate(notes):
-        curves.append([])
+        if not (note.contour or note.marks):
+            continue
         length_s = end_s - begin_s
-        may_move = (note.contour or note.marks) and length_s > LAST_S
-        if may_move and (points := _points_of(note, begin_s, end_s)):
+        points = _points_of(note, begin_s, end_s) if length_s > LAST_S else []
+        if points:
             count = min(max(int(length_s / STEP_S), 1), MAX_POINTS)
             alike[len(points), count].append((number, begin_s, end_s, points))
     for (_, count), same in alike.items():

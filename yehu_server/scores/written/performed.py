@@ -27,7 +27,7 @@ from yehu_server.scores.written.mark_settings import (
     values_of,
 )
 from yehu_server.scores.written.notated import Note, Part, Written, times
-from yehu_server.scores.written.ornaments import Curve, curves_of, touches_of
+from yehu_server.scores.written.ornaments import WAYS, Curve, curves_of, touches_of
 from yehu_server.scores.written.part_bowing import Played, bowed, has_bowing
 from yehu_server.scores.written.tempo import WrittenClock
 
@@ -114,6 +114,7 @@ class _Manner(NamedTuple):
     values: Mapping[str, float]  # of parameters, by address
     pitch: float  # that the finger has: of a harmonic where it touches
     is_node: bool
+    is_ornamented: bool
     slides_in: bool
     left: Sequence[str]  # what is left out
 
@@ -208,7 +209,7 @@ class _Performer:
             if loudness.is_marked:
                 self._swell(loudness, first, played[first : first + BLOCK])
             curves = curves_of(each[:3] for each, *_ in block)
-            for place, (row, curve) in enumerate(zip(block, curves, strict=True), first):
+            for place, row in enumerate(block, first):
                 (note, begin_s, end_s, direction, slide_s), active, velocity, _ = row
                 _, _, pitch, marks, before, after, contour = note
                 is_plain = not (marks or before or after or contour or direction or slide_s)
@@ -216,7 +217,7 @@ class _Performer:
                 if is_plain and key == pitch and not self._set and active == PLAIN:
                     self._touches.append((begin_s, end_s, key, velocity, place))
                 else:
-                    self._play(*row, place, curve)
+                    self._play(*row, place, curves.get(place - first, []))
             self._moves.check(2 * len(self._touches) + len(rows))
         last_s = max(each.end_s for each in played) + LAST_S
         self._put_back(last_s, len(played), part.ends_at[-1], {})
@@ -252,8 +253,10 @@ class _Performer:
             self._put_back(begin_s, place, beat, values)
         if manner.left:
             self._moves.left.update(manner.left)
-        sounding = note if pitch == note.pitch else note._replace(pitch=pitch)
-        touches = touches_of(sounding, begin_s, end_s)
+        touches = [(begin_s, end_s, pitch)]
+        if manner.is_ornamented or note.before or note.after:
+            sounding = note if pitch == note.pitch else note._replace(pitch=pitch)
+            touches = touches_of(sounding, begin_s, end_s)
         if manner.slides_in and len(touches) > 1:  # the first of them slides
             self._setting(touches[1][0], SET, place, THEN, beat, ARTICULATION, None)
             self._set.pop(ARTICULATION, None)
@@ -262,18 +265,24 @@ class _Performer:
             own = key if its == pitch else _key_of(its - (pitch - key))
             if own != key or its == pitch:
                 self._touches.append((touch_s, until_s, own, velocity, place))
-        for at_s, semitones in curve[1:]:
-            self._setting(at_s, AFTER, place, THEN, beat, BEND, pitch - key + semitones)
-            self._set[BEND] = math.nan  # whatever it was, it is put back
+        if curve:
+            self._bend(curve, pitch - key, place, beat)
         if slide_s > 0.0:
             for address in (PORTAMENTO, PORTAMENTO_TIME):
                 self._setting(begin_s + AFTER_S, AFTER, place, THEN, beat, address, None)
                 del self._set[address]
 
+    def _bend(self, curve: Curve, sharper: float, place: int, beat: float) -> None:
+        """Follow a curve, whose first point is set where the note begins."""
+        for at_s, semitones in curve[1:]:
+            self._setting(at_s, AFTER, place, THEN, beat, BEND, sharper + semitones)
+            self._set[BEND] = math.nan  # whatever it was, it is put back
+        self._moves.check(2 * len(self._touches) + len(self._rows))  # many are long
+
     def _manner(self, note: Note, active: Active, quarter_s: float) -> _Manner:
         """How a note is played; notes that are written alike are played alike."""
-        length = note.length.numerator / note.length.denominator
-        key = note.pitch, note.marks, length, active, quarter_s
+        # Lengths that are alike are mostly one object, which is found sooner than a fraction.
+        key = note.pitch, note.marks, id(note.length), active, quarter_s
         found = self._manners.get(key)
         if found is None:
             node = harmonic_of(note, self._within)
@@ -281,6 +290,7 @@ class _Performer:
                 values_of(note, active, quarter_s, self._within),
                 note.pitch if node is None else node.touched,
                 node is not None,
+                not note.names.isdisjoint(WAYS),
                 bool(slide_of(note)) and node is None,
                 [*self._left_out(note, active)],
             )

@@ -102,21 +102,22 @@ class WrittenClock:
 
 def _stretches(written: Written) -> Iterator[Stretch]:
     for part in written.parts:
-        for note, names in zip(part.notes, part.names, strict=True):
+        columns = part.notes, part.names, part.begins_at, part.ends_at
+        for note, names, begin, end in zip(*columns, strict=True):
             if HOLDING.isdisjoint(names):
                 continue
             fermata, caesura = note.marked("fermata"), note.marked("caesura")
             factor = 1.0 if fermata is None else _held(fermata.value)
-            begin = note.held_from
-            more_s = 0.0 if caesura is None else CAESURA_S / float(note.end - begin)
-            yield Stretch(float(begin), note.ends_at, factor, more_s)
+            held = float(note.held_from) if fermata and fermata.second else begin
+            more_s = 0.0 if caesura is None else CAESURA_S / float(note.end - note.held_from)
+            yield Stretch(held, end, factor, more_s)
         for sign in part.signs:
             if sign.name == "fermata":
                 yield Stretch(float(sign.beat), float(sign.beat + WAIT), _held(sign.value))
             elif sign.name == "caesura" and sign.beat > 0:
-                begin = max(sign.beat - BRIEF, Fraction(0))
-                more_s = CAESURA_S / float(sign.beat - begin)
-                yield Stretch(float(begin), float(sign.beat), 1.0, more_s)
+                since = max(sign.beat - BRIEF, Fraction(0))
+                more_s = CAESURA_S / float(sign.beat - since)
+                yield Stretch(float(since), float(sign.beat), 1.0, more_s)
 
 
 def _held(factor: float | None) -> float:

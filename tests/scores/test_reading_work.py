@@ -15,7 +15,8 @@ from midi_bytes import END, midi, off, on
 
 from yehu_server.errors import YehuError
 from yehu_server.scores.abc.tokens import TOKEN
-from yehu_server.scores.reading import read_any
+from yehu_server.scores.reading import read_any, read_written
+from yehu_server.scores.written.ticks import FINEST, TICKS
 
 FEW, MORE = 100, 400
 MAX_RATIO = 7  # times the lines for 4 times the file; 16 times is quadratic
@@ -106,17 +107,28 @@ def test_reading_takes_time_in_proportion(tmp_path, shape):
     assert lines[2] < MAX_RATIO * lines[1]
 
 
-# Lines of Python for each note of a dense file, and of all that is below them; there were 232, 526,
-# 503, 1253 and 748 before events were columns and notes tuples.
+# Lines of Python for each note of a dense file, and of all that is below them. With a fraction for
+# each beat and a note performed at a time there were half as many again, to four times as many.
+SLOW = ABC.replace("1/64", "1/8")
+TRILL = NOTE.format("<notations><ornaments><trill-mark/></ornaments></notations>")
 DENSE: dict[str, tuple[Callable[[int], bytes | str], int]] = {
     "dense.mid": (
         lambda n: midi(b"".join(on(1, 40 + at % 50) + off(0, 40 + at % 50) for at in range(n))),
         60,
     ),
-    "dense.abc": (lambda n: ABC + "a3/2b|" * (n // 2), 480),
-    "slurs.abc": (lambda n: ABC + "(ab)" * (n // 2), 450),
-    "ornaments.abc": (lambda n: ABC + "T{g}a" * n, 850),
-    "dense.jianpu": (lambda n: "1=C\n" + "q1 ( s2 ) " * (n // 2), 620),
+    "dense.abc": (lambda n: ABC + "a3/2b|" * (n // 2), 300),
+    "triplets.abc": (lambda n: ABC + "(3abc" * (n // 3), 220),
+    "slurs.abc": (lambda n: ABC + "(ab)" * (n // 2), 290),
+    "ornaments.abc": (lambda n: ABC + "T{g}a" * n, 460),
+    "bows.abc": (lambda n: ABC + "uavb" * (n // 2), 320),
+    "fermatas.abc": (lambda n: ABC + "aHb" * (n // 2), 290),
+    "slides.abc": (lambda n: SLOW + "!slide!a!fall!b" * (n // 2), 460),
+    "swells.abc": (lambda n: SLOW + "!<(!a!<)!!>(!b!>)!" * (n // 2), 530),
+    "dynamics.abc": (lambda n: ABC + "!p!a!f!b" * (n // 2), 430),
+    "dense.jianpu": (lambda n: "1=C\n" + "q1 ( s2 ) " * (n // 2), 400),
+    "triplets.jianpu": (lambda n: "1=C\n" + "3[ q1 q2 q3 ] " * (n // 3), 340),
+    "living.jianpu": (lambda n: "notation=二四谱\nmode=活五\n" + "五 三 " * (n // 2), 1250),
+    "trills.musicxml": (lambda n: bars(DIVISIONS + TRILL * n), 890),
 }
 
 
@@ -131,6 +143,15 @@ def test_a_note_of_a_dense_file_takes_few_lines(tmp_path, shape):
         lines.append(lines_of(path))
     a_note = (lines[2] - lines[1]) / (MORE - FEW)
     assert a_note < most
+
+
+def test_odd_lengths_do_not_make_ever_finer_beats(tmp_path):
+    path = tmp_path / "odd.abc"
+    path.write_text(ABC + "".join(f"a{number}/{number + 1}" for number in range(3000, 4000)))
+    beats = [note.beat for note in read_written(path).parts[0].notes]
+    assert len(beats) == 1000
+    assert all(beat.denominator <= TICKS * FINEST for beat in beats)
+    assert max(abs(beat * 16 - number) for number, beat in enumerate(beats)) < 0.5
 
 
 def test_what_lasts_too_long_is_refused_before_it_is_performed(tmp_path, monkeypatch):

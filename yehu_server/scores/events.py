@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any, ClassVar, NamedTuple, overload
+from typing import Any, NamedTuple, overload
 
 import mido
 import numpy as np
@@ -23,15 +23,18 @@ Array = Any
 BEND = "/playing/bend"  # address of what lies between keys
 
 
-@dataclass(frozen=True)
-class Setting:
+class Setting(NamedTuple):
     """A parameter that a score sets, among the messages of its events."""
 
     address: str  # of `params/table.py`
     value: float | None  # None: what it was before the score set it
     channel: int = 0  # of the part, counted from 0; where that is not played, nothing is set
     is_passing: bool = False  # holds until the next note begins, which ends it without a move
-    type: ClassVar[str] = "setting"  # as messages have one
+
+    @property
+    def type(self) -> str:
+        """Its type, as messages have one."""
+        return "setting"
 
 
 class ScoreEvent(NamedTuple):

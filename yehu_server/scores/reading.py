@@ -181,15 +181,18 @@ def _read(
             return _midi_played(score, options)
     written = read_written(path, song)
     with errors_name(path):
-        check_duration(shortest_s(written), max_duration_h)  # before it is performed for long
-        score = performed_part(written, options)
+        clock = WrittenClock(written)
+        check_duration(shortest_s(written, clock), max_duration_h)  # before it is performed
+        score = performed_part(written, options, clock)
         check_duration(score.duration_s, max_duration_h)
         if strict and score.warnings:
             raise DamagedError(f"{score.warnings[0]}: refused by --strict")
     return replace(score, name=path.stem)
 
 
-def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
+def performed_part(
+    written: Written, options: ReadOptions = DEFAULT, clock: WrittenClock | None = None
+) -> Score:
     """The parts of a written score that are asked for, as played; raises ScoreError."""
     if options.parts:
         plays = chosen_parts.numbers_of(written.names, options.parts)
@@ -202,7 +205,7 @@ def performed_part(written: Written, options: ReadOptions = DEFAULT) -> Score:
         written, line = moved(written, plays, options.within)
         remarks.append(line)
     remarks = [*filter(None, remarks)]
-    clock = WrittenClock(written)
+    clock = clock or WrittenClock(written)
     score = performed(replace(written, remarks=tuple(remarks)), plays, options.within, clock)
     leading = leading_notes(written.parts[next(iter(default_parts(written)), 0)], clock)
     return replace(score, delays=delays_of(leading))

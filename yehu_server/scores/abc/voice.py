@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 
 from yehu_server.errors import ScoreError, one_line
 from yehu_server.scores.abc import fields, keywords
 from yehu_server.scores.abc.keys import key_of, properties_of
-from yehu_server.scores.abc.tokens import KINDS, NOTE, NOTE_AT, TOKEN
+from yehu_server.scores.abc.tokens import TOKENS, NoteToken, multiple_of, notes_in, token_of
 from yehu_server.scores.score import nearest_key
 from yehu_server.scores.written.layout import LETTERS, SEMITONES
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, MAX_NOTES, Mark
 from yehu_server.scores.written.ornaments import HALF, WAYS, WHOLE, Around, around_letter
 from yehu_server.scores.written.repeats import MAX_BARS, MAX_TIMES, BarLines
 from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
+from yehu_server.scores.written.ticks import TICKS, Ticks, bounded, scaled, ticks_of
 from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 from yehu_server.scores.written.words import meaning_of
 
 MIDDLE_C = 60.0
 LONGEST = 64  # quarters of a note
 MAX_BARS_REST = 1000
-ONE, GRACE = Fraction(1), Fraction(1, 4)
-_NOTE, _UNDERSTOOD = re.compile(NOTE), re.compile(rf"{NOTE}|[\s\[\]{{}}/]")
-Pitched = tuple[float, Fraction, Around]
+ENDS_OVERLAY, TIED = {"bar", "ending"}, frozenset({"start"})
+ONE, GRACE = Fraction(1), TICKS // 4
+VOICE = "1", "1"
+MARKS = {name: Mark(*found) for name, found in keywords.DECORATIONS.items()}
+WHOLE_AND_HALF = WHOLE, HALF
 
 
 class VoiceReader:
@@ -48,28 +50,34 @@ class VoiceReader:
         self._spread = keywords.SPREADS[0]
         self._ratio = (3, 1)  # of broken rhythm
         self.is_hornpipe = False
-        self._before = Fraction(0)  # the length of the last bar
+        self._before: Ticks = 0  # the length of the last bar
         self._swing_unit: Fraction | None = keywords.SWUNG["C"]
-        self._metre: Fraction | None = Fraction(4)
+        self._metre: Ticks | None = 4 * TICKS
         self._odd_times = 2  # of tuplets of 5, 7 and 9: 3 in compound time
         self._place = ("C", 0, 0.0)  # of the last note: letter, octave, accidental
         self._in_bar: dict[str | tuple[str, int], float] = {}  # accidentals, by what they reach
         self._tied: dict[tuple[str, int], float] = {}
         self._bar = RawBar("1", BarLines())
-        self._at = Fraction(0)
+        self._at: Ticks = 0
         self._ending: frozenset[int] = frozenset()
         self._marks: list[Mark] = []
         self._slurs: list[str] = []
         self._starts: list[tuple[str, str, str]] = []  # slurs that begin with the next note
         self._slur_count = 0
         self._last: list[RawNote] = []
-        self._last_begin = Fraction(0)
+        self._last_begin: Ticks = 0
         self._next_factor = ONE
-        # Lengths by how they are written: most are alike, and fractions take long.
-        self._lengths: dict[str, Fraction] = {}
+        self._lengths: dict[str, Ticks] = {}  # by how they are written
         self._tuplet: list[Fraction] = []  # factors of the next notes
         self._count = 0
         self._in_overlay = False
+        self._ways: dict[str, Callable[..., None]] = {
+            "note": self._note, "bar": self._bar_line, "ending": self._begin_ending,
+            "chord": self._chord, "rest": self._rest, "bars": self._rest_of_bars,
+            "tuplet": self._begin_tuplet, "slur": self._slur, "tie": self._tie,
+            "broken": self._break, "grace": self._graces, "text": self._text, "sign": self._sign,
+            "short": self._short, "over": self._overlay, "other": self._other,
+        }  # fmt: skip
 
     def label(self) -> int:
         """The number of the bar that comes next, once what is open has ended."""
@@ -93,7 +101,8 @@ class VoiceReader:
                 self._fifths, self._alters = key
             self.set_properties(found)
         elif letter == "M":
-            self._metre = self._bar.metre = fields.metre_of(value)
+            metre = fields.metre_of(value)
+            self._metre = self._bar.metre = None if metre is None else ticks_of(metre)
             self._odd_times = 3 if value.strip() in ("6/8", "9/8", "12/8") else 2
             self._swing_unit = keywords.SWUNG.get(value.strip())
         elif letter == "L":
@@ -118,74 +127,42 @@ class VoiceReader:
     def line(self, text: str, inline: Callable[[str, str], VoiceReader]) -> None:
         """Read a line of music; `inline` takes fields within it and returns who reads on."""
         reader = self
-        for found in TOKEN.finditer(text):
-            if found["field"]:
-                reader = inline(found["field"][1], found["field"][3:-1])
-            else:
-                reader._take(found)  # noqa: SLF001 - of the same class
+        for kind, values in map(token_of, TOKENS.findall(text)):
+            if kind == "field":
+                reader = inline(*values)
+            elif kind and (kind in ENDS_OVERLAY or not reader._in_overlay):  # noqa: SLF001
+                reader._ways[kind](*values)  # noqa: SLF001 - of the same class
 
-    def _take(self, found: re.Match[str]) -> None:  # noqa: C901, PLR0912 - a branch for each token
-        last = found.lastgroup or ""
-        kind = KINDS.get(last, last)
-        if kind == "note" and not self._in_overlay:
-            own = found.groups()[NOTE_AT : NOTE_AT + 4]
-            self._notes([self._pitched(*own)], found["note"].endswith("-"))
-        elif kind == "bar":
-            self._bar_line(found["bar"].lstrip("."), found["number"] or "")
-        elif kind == "ending":
-            self._begin_ending(found["ending"][1:])
-        elif self._in_overlay or kind in ("", "space"):
-            return
-        elif kind == "chord":
-            self._chord(found)
-        elif kind == "rest":
-            self._add([], self._length(found["rest_length"]))
-        elif kind == "bars":
-            self._end_bar()
-            for _ in range(min(int(found["bars_count"][:5] or 1), MAX_BARS_REST)):
-                self._at = self._metre or Fraction(4)
-                self._end_bar()
-        elif kind == "tuplet":
-            self._begin_tuplet(int(found["tuplet"]), found["ratio"].split(":")[1:])
-        elif kind == "slur":
-            self._slur(found["slur"])
-        elif kind == "tie":
-            self._tie()
-        elif kind == "broken":
-            self._break(found["broken"])
-        elif kind == "grace":
-            self._graces(found["grace"])
-        elif kind == "text":
-            self._text(found["text"][1:-1])
-        elif kind == "sign":
-            self._sign(found["sign"][1:-1])
-        elif kind == "short":
-            self._sign(self._shortcuts.get(found["short"], found["short"]))
-        elif kind == "over":
-            self._warnings["second voices over a bar (&) are not played"] += 1
-            self._in_overlay = True
-        else:
-            self._unknown[one_line(found["other"])] += 1
+    def _overlay(self) -> None:
+        self._warnings["second voices over a bar (&) are not played"] += 1
+        self._in_overlay = True
+
+    def _other(self, sign: str) -> None:
+        self._unknown[one_line(sign)] += 1
 
     # -- notes -------------------------------------------------------------------------------
 
-    def _pitched(self, sign: str | None, letter: str, octaves: str, length: str) -> Pitched:
-        name, octave = _place(letter, octaves)
+    def _pitch(self, sign: str, name: str, octave: int) -> float:
+        """The pitch of a note, whose accidental holds from here on."""
         reached = self._reached(name, octave)
         if sign:
             alter = keywords.ALTERS[sign]
             if self._spread != "not":
                 self._in_bar[reached] = alter
-        elif (name, octave) in self._tied and reached not in self._in_bar:
+        elif self._tied and (name, octave) in self._tied and reached not in self._in_bar:
             alter = self._tied[name, octave]
         else:
-            alter = self._alter_of(name, octave)
+            alter = self._in_bar.get(reached, self._alters[name])
         self._place = name, octave, alter
-        around = (WHOLE, HALF)
-        if any(mark.name in WAYS for mark in self._marks):
-            around = around_letter(name, octave, alter, self._alter_of)
         pitch = self._middle_c + SEMITONES[name] + alter + 12.0 * octave
-        return min(max(pitch, 0.0), 127.0), self._length(length), around
+        return min(max(pitch, 0.0), 127.0)
+
+    def _around(self) -> Around:
+        """The intervals to the neighbours of the last note, for its ornaments."""
+        for mark in self._marks:
+            if mark.name in WAYS:
+                return around_letter(*self._place, self._alter_of)
+        return WHOLE_AND_HALF
 
     def _reached(self, name: str, octave: int) -> str | tuple[str, int]:
         """What an accidental reaches in its bar."""
@@ -194,67 +171,71 @@ class VoiceReader:
     def _alter_of(self, name: str, octave: int) -> float:
         return self._in_bar.get(self._reached(name, octave), self._alters[name])
 
-    def _length(self, text: str) -> Fraction:
-        """A length in quarters."""
+    def _length(self, text: str) -> Ticks:
         length = self._lengths.get(text)
         if length is None:
-            length = self._lengths[text] = _length(text) * self.unit
+            length = self._lengths[text] = ticks_of(multiple_of(text) * self.unit)
         return length
 
-    def _notes(self, pitched: list[Pitched], ties: bool, factor: Fraction = ONE) -> None:
-        length, (pitch, _, around) = pitched[0][1], max(pitched)
-        if factor is not ONE:
-            length *= factor
-        if len(pitched) > 1:
-            self._warnings["lower notes of chords are not played"] += len(pitched) - 1
-        marks, ends = self._marks, self._starts
-        note = RawNote(self._at, length, pitch, ("1", "1"), marks, around, ends=ends)
-        self._marks, self._starts, self._tied = [], [], {}
-        self._add([note], length)
-        if ties:
-            self._tie()
+    def _note(self, sign: str, name: str, octave: int, length: str, tie: str) -> None:
+        pitch = self._pitch(sign, name, octave)
+        self._add(self._length(length), pitch, self._around(), tie)
 
-    def _add(self, notes: list[RawNote], length: Fraction) -> None:
+    def _rest(self, length: str) -> None:
+        self._add(self._length(length), None)
+
+    def _add(
+        self, length: Ticks, pitch: float | None, around: Around = WHOLE_AND_HALF, tie: str = ""
+    ) -> None:
         """Put a note, or a rest, where the music is."""
         self._count_note()
         if self._tuplet:
-            length *= self._tuplet.pop()
+            length = scaled(length, self._tuplet.pop())
         if self._next_factor is not ONE:
-            length, self._next_factor = length * self._next_factor, ONE
-        if length.numerator > LONGEST * length.denominator:
-            length = Fraction(LONGEST)
-        self._last, self._last_begin = notes, self._at
-        for note in notes:
-            note.length = length
-            if length:
-                self._bar.notes.append(note)
-        self._at += length
+            length, self._next_factor = scaled(length, self._next_factor), ONE
+        length = min(length, LONGEST * TICKS)
+        at = self._at
+        self._last, self._last_begin, self._at = [], at, bounded(at + length)
+        if pitch is None:
+            return
+        note = RawNote(at, length, pitch, VOICE, self._marks, around, ends=self._starts)
+        self._marks, self._starts, self._tied = [], [], {}
+        self._last = [note]
+        if length:
+            self._bar.notes.append(note)
+        if tie:
+            self._tie()
 
     def _count_note(self) -> None:
         self._count += 1
         if self._count > MAX_NOTES:
             raise ScoreError(f"has more than {MAX_NOTES} notes")
 
-    def _chord(self, found: re.Match[str]) -> None:
-        if not (inner := self._inner(found["chord"])):
+    def _chord(self, notes: str, factor: str, tie: str) -> None:
+        if not (inner := self._inner(notes)):
             return
-        pitched = [self._pitched(*each.groups()[:4]) for each in inner]
-        ties = bool(found["chord_tie"]) or any(each[5] for each in inner)
-        self._notes(pitched, ties, _length(found["chord_length"]))
+        pitched = []
+        for sign, name, octave, text, _ in inner:
+            pitch = self._pitch(sign, name, octave)
+            pitched.append((pitch, self._length(text), self._around()))
+        pitch, _, around = max(pitched)
+        if len(pitched) > 1:
+            self._warnings["lower notes of chords are not played"] += len(pitched) - 1
+        length = scaled(pitched[0][1], multiple_of(factor))
+        self._add(length, pitch, around, tie or next((each[4] for each in inner if each[4]), ""))
 
-    def _inner(self, text: str) -> list[re.Match[str]]:
+    def _inner(self, text: str) -> Sequence[NoteToken]:
         """The notes in brackets; what else is in them is told."""
-        found, other = [*_NOTE.finditer(text)], _UNDERSTOOD.sub("", text)
+        found, other = notes_in(text)
         if other or not found:
             self._unknown[one_line(f"{other[:40]} in {text[0]}{text[-1]}".strip())] += 1
         return found
 
     def _graces(self, text: str) -> None:
-        for each in self._inner(text):
+        for sign, name, octave, *_ in self._inner(text):
             self._count_note()
-            pitch, *_ = self._pitched(*each.groups()[:4])
-            small = RawNote(self._at, GRACE, pitch, ("1", "1"), is_grace=True)
-            self._bar.notes.append(small)
+            pitch = self._pitch(sign, name, octave)
+            self._bar.notes.append(RawNote(self._at, GRACE, pitch, VOICE, [], is_grace=True))
 
     def _break(self, signs: str) -> None:
         """Broken rhythm: one of two notes is longer by what the other loses."""
@@ -264,21 +245,21 @@ class VoiceReader:
         if len(signs) == 1:
             short = Fraction(2 * self._ratio[1], sum(self._ratio))
         first, self._next_factor = (2 - short, short) if signs[0] == ">" else (short, 2 - short)
-        length = (self._at - self._last_begin) * first
+        length = scaled(self._at - self._last_begin, first)
         for note in self._last:
             note.length = length
         self._at = self._last_begin + length
 
-    def _begin_tuplet(self, count: int, ratio: list[str]) -> None:
-        given = [*(int(each or 0) for each in ratio), 0, 0]
+    def _begin_tuplet(self, count: int, ratio: str) -> None:
+        given = [*(int(each or 0) for each in ratio.split(":")[1:]), 0, 0]
         times = given[0] or keywords.TIMES.get(count, self._odd_times)
         notes = given[1] or count
         if count and times and notes < 64:
-            self._tuplet = [Fraction(times, count)] * notes
+            self._tuplet = [_factor(times, count)] * notes
 
     def _tie(self) -> None:
         for note in self._last:
-            note.ties.add("start")
+            note.ties = TIED
             self._tied[self._place[:2]] = self._place[2]
 
     def _slur(self, sign: str) -> None:
@@ -291,9 +272,12 @@ class VoiceReader:
 
     # -- marks -------------------------------------------------------------------------------
 
+    def _short(self, letter: str) -> None:
+        self._sign(self._shortcuts.get(letter, letter))
+
     def _sign(self, name: str) -> None:
         if name in keywords.DECORATIONS:
-            self._marks.append(Mark(*keywords.DECORATIONS[name]))
+            self._marks.append(MARKS[name])
         elif name in DYNAMICS or name in FORCED:
             self._direct("sign", name)
         elif name in keywords.WEDGES:
@@ -337,6 +321,12 @@ class VoiceReader:
         if number:
             self._begin_ending(number)
 
+    def _rest_of_bars(self, count: str) -> None:
+        self._end_bar()
+        for _ in range(min(int(count[:5] or 1), MAX_BARS_REST)):
+            self._at = self._metre or 4 * TICKS
+            self._end_bar()
+
     def _end_bar(self, times: int = 0) -> None:
         self._in_overlay = False
         bar = self._bar
@@ -344,14 +334,15 @@ class VoiceReader:
             bar.length = self._at
             if self.is_hornpipe and self._swing_unit and self._metre:
                 begin = begin_of_beats(bar.length, self._before, self._metre)
-                swing_notes(bar.notes, Swing(self._swing_unit, *self._ratio, True), begin)
+                swing = Swing(ticks_of(self._swing_unit), *self._ratio, True)
+                swing_notes(bar.notes, swing, begin)
             self._before = bar.length
             bar.number = str(len(self.bars) + 1)
             self.bars.append(bar)
             if len(self.bars) > MAX_BARS:
                 raise ScoreError(f"has more than {MAX_BARS} bars")
             self._bar = RawBar("", BarLines(endings=self._ending))
-            self._at = self._last_begin = Fraction(0)
+            self._at = self._last_begin = 0
             self._in_bar = {}
         if times and self.bars:
             self.bars[-1].lines.times = times
@@ -377,17 +368,5 @@ class VoiceReader:
 
 
 @lru_cache
-def _place(letter: str, octaves: str) -> tuple[str, int]:
-    """The letter of a note, and its octave from the middle."""
-    return letter.upper(), letter.islower() + octaves.count("'") - octaves.count(",")
-
-
-def _length(text: str) -> Fraction:
-    """A multiple of the unit: 2, 3/2, /, //, /4."""
-    number, slash, rest = text.partition("/")
-    value = Fraction(int(number[:4] or 1))
-    if slash:
-        strokes = 1 + rest.count("/")
-        under = rest.replace("/", "")
-        value /= int(under[:4]) if under and int(under[:4]) else 2 ** min(strokes, 8)
-    return value
+def _factor(times: int, count: int) -> Fraction:
+    return Fraction(times, count)

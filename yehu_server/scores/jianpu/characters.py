@@ -11,6 +11,7 @@ sources of those here.
 import re
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from itertools import cycle, islice
 
 Contour = tuple[tuple[float, float], ...]
@@ -81,6 +82,7 @@ def is_living(character: str, weight: str, mode: Mode) -> bool:
     return mode.living and character in (SAN, WU)
 
 
+@lru_cache(maxsize=1024)
 def living(character: str, quarters: Fraction) -> Contour:
     """The moves of a living note within its length, as `notated.Note.contour`."""
     swings: tuple[float, ...]

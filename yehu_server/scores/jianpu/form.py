@@ -3,13 +3,13 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.jianpu.note_words import Kind
 from yehu_server.scores.jianpu.text import Word, failure
 from yehu_server.scores.written.notated import Grace
 from yehu_server.scores.written.ornaments import HALF, WHOLE, Around
+from yehu_server.scores.written.ticks import TICKS, Ticks
 from yehu_server.scores.written.words import Meaning
 
 UNFIT = "bar lines do not fit the metre"
@@ -24,24 +24,25 @@ class Bars:
     """Tracks the place within the bar, in the order of the page, and warns of bars that do not fit.
 
     Notes are checked only once a metre is written. `length` is that of a whole bar, `place`
-    what has passed of it, both in quarters.
+    what has passed of it, both in ticks.
     """
 
     def __init__(self, notices: Counter[str]) -> None:
-        self.length, self.place = Fraction(4), Fraction(0)
+        self.length: Ticks = 4 * TICKS
+        self.place: Ticks = 0
         self._notices = notices
         self._is_written = False
-        self.before_repeat = Fraction(0)  # the place where the last one's first time ended
-        self._upbeat = Fraction(0)
+        self.before_repeat: Ticks = 0  # the place where the last one's first time ended
+        self._upbeat: Ticks = 0
         self._short: Word | None = None  # the end of a bar that an upbeat completes, if it is last
 
-    def change(self, length: Fraction, first: Fraction) -> None:
+    def change(self, length: Ticks, first: Ticks) -> None:
         """Begin a metre; its first bar may be shorter."""
         self.length, self.place = length, length - first
         self._upbeat = first
         self._is_written = True
 
-    def step(self, length: Fraction, word: Word) -> None:
+    def step(self, length: Ticks, word: Word) -> None:
         """Advance by a note."""
         if self._short is not None:
             self._warn(UNFIT, self._short)
@@ -59,9 +60,9 @@ class Bars:
                 self._short = word
             else:
                 self._warn(UNFIT, word)
-            self.place = Fraction(0)
+            self.place = 0
 
-    def repeat(self, begin: Fraction, times: int) -> None:
+    def repeat(self, begin: Ticks, times: int) -> None:
         """Move to the place after a repeat, which began at a place."""
         self.before_repeat = self.place
         self.place = (begin + times * (self.place - begin)) % self.length
@@ -76,7 +77,7 @@ class Element:
     """A note, rest or dash, which may be played several times."""
 
     kind: Kind
-    length: Fraction
+    length: Ticks
     pitch: float | None = None  # MIDI note; None for a rest or dash
     other: float | None = None  # the other note of a tremolo between two
     living: str = ""  # the character, of a living note of 二四谱
@@ -89,10 +90,10 @@ class Element:
 
 @dataclass(frozen=True, slots=True)
 class MetreMark:
-    """A metre from here on, and how long the bar is that it begins with (quarters)."""
+    """A metre from here on, and how long the bar is that it begins with."""
 
-    bar: Fraction
-    first: Fraction
+    bar: Ticks
+    first: Ticks
 
 
 @dataclass
@@ -111,7 +112,7 @@ class _Open:
     elements: list[object]
     word: Word
     repeat: Repeat
-    begin: Fraction  # within the bar, of the repeat or of its first ending
+    begin: Ticks  # within the bar, of the repeat or of its first ending
     endings: bool = False
     signs: bool = False
 
@@ -120,7 +121,7 @@ class RepeatStack:
     """Collects elements, in the order of the page, with the repeats that are open."""
 
     def __init__(self, bars: Bars) -> None:
-        self._stack = [_Open([], Word("", 1, 1), Repeat(1), Fraction(0))]  # first the whole piece
+        self._stack = [_Open([], Word("", 1, 1), Repeat(1), 0)]  # first the whole piece
         self._bars = bars
 
     def add(self, element: object) -> None:

@@ -2,11 +2,12 @@
 
 import re
 from dataclasses import dataclass
-from enum import Enum, auto
+from enum import Enum, IntEnum, auto
 from fractions import Fraction
 from functools import lru_cache
 
 from yehu_server.scores.jianpu.characters import CHARACTERS, WEIGHTS
+from yehu_server.scores.written.ticks import Ticks, ticks_of
 
 MAJOR = (0.0, 2.0, 4.0, 5.0, 7.0, 9.0, 11.0)
 LENGTHS = "cqsdh"  # crotchet, quaver, semiquaver, demi-, hemidemisemiquaver
@@ -26,7 +27,7 @@ class Kind(Enum):
     BEAT = auto()  # of percussion
 
 
-class Octaves(Enum):
+class Octaves(IntEnum):  # whose values are hashed at once
     """To which figure an octave mark belongs that stands between two."""
 
     UNSAID = auto()
@@ -217,6 +218,6 @@ def height(figure: Figure) -> float:
 
 
 @lru_cache(maxsize=1024)
-def quarters(beams: int, dots: int, tuplet: Fraction) -> Fraction:
-    """The length of a note of so many beams and dots, in quarters."""
-    return Fraction(2 ** (dots + 1) - 1, 1 << (dots + beams)) * tuplet
+def length_of(beams: int, dots: int, room: int, notes: int) -> Ticks:
+    """The length of a note of so many beams and dots, of `notes` in the room of others."""
+    return ticks_of(Fraction(2 ** (dots + 1) - 1, 1 << (dots + beams)) * Fraction(room, notes))

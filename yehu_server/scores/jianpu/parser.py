@@ -5,7 +5,6 @@ from collections import Counter
 from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
-from operator import itemgetter
 
 from yehu_server.scores.jianpu.form import (
     JUMPS,
@@ -22,14 +21,15 @@ from yehu_server.scores.jianpu.note_words import (
     NoteWord,
     Octaves,
     grace_word,
+    length_of,
     note_word,
-    quarters,
 )
 from yehu_server.scores.jianpu.scale import Scale
 from yehu_server.scores.jianpu.text import Word, failure
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import HIGHEST_TEMPO, LOWEST_TEMPO, Grace
 from yehu_server.scores.written.ornaments import WAYS
+from yehu_server.scores.written.ticks import Ticks, ticks_of
 from yehu_server.scores.written.words import Meaning
 
 MAX_TUPLET, MAX_BARS_REST = 64, 1000
@@ -55,6 +55,22 @@ def _form_of(text: str) -> re.Match[str] | None:
     return next(filter(None, (form.fullmatch(text) for form in forms)), None)
 
 
+@lru_cache(maxsize=1024)
+def _pieces_of(text: str, octaves: Octaves) -> list[str]:
+    """The words that are written together as one; none where it is no such word."""
+    found = _ATTACHED.findall(text)
+    signs = {*found} & {*SLURS_AND_TIES}
+    has_bar = not {"|", "\u2016"}.isdisjoint(text) or text == "::"
+    if has_bar and '"' not in text and not _BAR_SIGNS.fullmatch(text):
+        return [piece for piece in _BAR_SIGNS.split(text) if piece]
+    if not signs or signs == {*found}:
+        return []
+    if not all(piece in SLURS_AND_TIES or note_word(piece, octaves) for piece in found):
+        return []
+    first = next(at for at, each in enumerate(found) if each != "(")
+    return [found[first], *found[:first], *found[first + 1 :]]
+
+
 class PartParser:
     """Reads the words of a part, one after another.
 
@@ -74,7 +90,7 @@ class PartParser:
         self._braces = RepeatStack(self._bars)
         self._octaves = Octaves.UNSAID
         self._keeps_length, self._last_beams = False, 0
-        self._tuplet = Fraction(1)
+        self._tuplet = (1, 1)  # notes in the room of others
         self._tuplet_word: Word | None = None
         self._in_harmonics = False
         self._ahead: list[Meaning] = []
@@ -86,8 +102,8 @@ class PartParser:
         self._skips = False  # the argument of \bar
         self._ways: tuple[Callable[[Word], bool], ...] = (
             self._as_note,
-            self._as_switch,
             self._as_action,
+            self._as_switch,
             self._as_graces,
             self._as_form,
             lambda word: self.scale.read_key(word.text),
@@ -110,8 +126,11 @@ class PartParser:
                 return
         if word.text == "LP:":
             self.notices["music in LilyPond code (LP:) is not played"] += 1
-        elif not any(read(word) for read in self._ways):
-            self.unknown[printable(word.text)] += 1
+            return
+        for read in self._ways:
+            if read(word):
+                return
+        self.unknown[printable(word.text)] += 1
 
     def end(self) -> list[object]:
         """Return all elements in the order of the page: notes, tempi, metres, repeats, jumps.
@@ -140,10 +159,10 @@ class PartParser:
         melody = len(note.figures) > 1 and not note.figures[0].sign.isascii()
         for group in [(figure,) for figure in note.figures] if melody else [note.figures]:
             self._add_note(note, group, word)
-        self._add_dashes(note, self._tuplet, word)
+        self._add_dashes(note, length_of(0, 0, *self._tuplet), word)
         return True
 
-    def _add_dashes(self, note: NoteWord, length: Fraction, word: Word) -> None:
+    def _add_dashes(self, note: NoteWord, length: Ticks, word: Word) -> None:
         """Each dash holds the note before it for a length; ``part`` joins them."""
         for _ in range(note.dashes):
             self._add(Element(Kind.DASH, length), word)
@@ -169,7 +188,8 @@ class PartParser:
     ) -> None:
         single = len(figures) == 1
         pitches = [self.scale.pitch(figure, word, shifted=single) for figure in figures]
-        element.pitch, self._figure = max(zip(pitches, figures, strict=True), key=itemgetter(0))
+        element.pitch = max(pitches)
+        self._figure = figures[pitches.index(element.pitch)]
         if tremolo and len(figures) == 2:
             element.pitch, element.other = pitches
         elif tremolo:
@@ -181,12 +201,12 @@ class PartParser:
             ] += 1
         element.living = self.scale.living(figures[0])
 
-    def _length(self, note: NoteWord) -> Fraction:
+    def _length(self, note: NoteWord) -> Ticks:
         beams = note.beams
         if beams is None:
             beams = self._last_beams if self._keeps_length else 0
         self._last_beams = beams
-        return quarters(beams, note.dots, self._tuplet)
+        return length_of(beams, note.dots, *self._tuplet)
 
     def _add(self, element: Element, word: Word) -> None:
         self._count += 1
@@ -221,7 +241,7 @@ class PartParser:
         if action is None:
             return False
         if self._last is None:  # before the first note: a moment without length
-            self._last = Element(Kind.REST, Fraction(0))
+            self._last = Element(Kind.REST, 0)
             self._braces.add(self._last)
         if action.kind == "slur" and self._braces.is_beginning:  # which has no note before it
             self._ahead.append(action)
@@ -235,24 +255,12 @@ class PartParser:
 
     def _as_attached(self, word: Word) -> bool:
         """Notes with brackets, ties or bar lines written onto them."""
-        found = _ATTACHED.findall(word.text)
-        signs = {*found} & {*SLURS_AND_TIES}
-        has_bar = not {"|", "\u2016"}.isdisjoint(word.text) or word.text == "::"
-        if has_bar and '"' not in word.text and not _BAR_SIGNS.fullmatch(word.text):
-            pieces = [piece for piece in _BAR_SIGNS.split(word.text) if piece]
-        elif signs and signs != {*found} and all(map(self._may_join, found)):
-            first = next(at for at, each in enumerate(found) if each != "(")
-            pieces = [found[first], *found[:first], *found[first + 1 :]]
-        else:
-            return False
+        pieces = _pieces_of(word.text, self._octaves)
         column = word.column
         for piece in pieces:
             self.read(Word(piece, word.line, column))
             column += len(piece)
-        return True
-
-    def _may_join(self, piece: str) -> bool:
-        return piece in SLURS_AND_TIES or note_word(piece, self._octaves) is not None
+        return bool(pieces)
 
     def _as_switch(self, word: Word) -> bool:
         text = word.text
@@ -279,9 +287,10 @@ class PartParser:
         self._braces.add(Meaning("tempo", value=tempo))
 
     def _metre(self, found: re.Match[str], word: Word) -> None:
-        bar = first = Fraction(4 * int(found[1]), int(found[2]))
+        bar = first = ticks_of(Fraction(4 * int(found[1]), int(found[2])))
         if found[3]:
-            first = Fraction(4, int(found[3])) * (Fraction(3, 2) if found[4] else 1)
+            dotted = Fraction(3, 2) if found[4] else 1
+            first = ticks_of(Fraction(4, int(found[3])) * dotted)
             if first > bar:
                 raise failure(word, "the pickup is longer than the bar")
         mark = MetreMark(bar, first)
@@ -306,7 +315,7 @@ class PartParser:
         elif text == "A{":
             self._braces.open_endings(word)
         elif text == "]":
-            self._tuplet, self._tuplet_word = Fraction(1), None
+            self._tuplet, self._tuplet_word = (1, 1), None
         elif (found := _form_of(text)) is not None:
             self._forms[found.re](found, word)
         else:
@@ -332,4 +341,4 @@ class PartParser:
             raise failure(word, f"more than {MAX_TUPLET} notes in a tuplet")
         power = 1 << max(1, (notes - 1).bit_length())
         room = notes * 3 // 2 if power == notes else power // 2
-        self._tuplet, self._tuplet_word = Fraction(room, notes), word
+        self._tuplet, self._tuplet_word = (room, notes), word

@@ -24,6 +24,7 @@ from yehu_server.scores.score import (
 )
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Bar, Part, Tempo, Written
+from yehu_server.scores.written.ticks import TICKS, Ticks, metre_at
 
 MAX_BYTES = 1 << 20
 MAX_MOVEMENTS = 64
@@ -84,7 +85,7 @@ class _Reader:
         self._characters: dict[str, float] | None = None
         self._names: dict[int, str] = {}
         self._parts: dict[int, list[PartBuilder]] = {}
-        self._end = Fraction(0)
+        self._end: Ticks = 0
 
     def read(self, movement: Sequence[Words]) -> None:
         """Read the parts of a movement, which begins where the one before ended."""
@@ -110,7 +111,7 @@ class _Reader:
         for number, each in enumerate(played):
             self._parts.setdefault(number, []).append(each)
         self._end = max(each.end for each in played)
-        if self._end > notated.MAX_BEATS:
+        if self._end > notated.MAX_BEATS * TICKS:
             raise ScoreError(f"lasts more than {notated.MAX_BEATS} quarter notes")
 
     def _head(self, header: Header, scale: Scale, part: int) -> None:
@@ -134,7 +135,7 @@ class _Reader:
             notes = tuple(note for each in movements for note in each.notes)
             signs = tuple(sign for each in movements for sign in each.signs)
             spans = (span for each in movements for span in each.spans)
-            ordered = tuple(sorted(spans, key=lambda span: span.begin))
+            ordered = tuple(sorted(spans, key=lambda span: float(span.begin)))
             parts.append(Part(self._names.get(number, ""), notes, ordered, signs))
         if not any(part.notes for part in parts):
             raise ScoreError("has no notes of jianpu")
@@ -162,7 +163,7 @@ class _Reader:
             return ()
         bars: list[Bar] = []
         number = 1
-        last = Metre(float(self._end), 0.0)
+        last = metre_at(self._end, 0)
         for metre, after in pairwise((*metres, last)):
             beat, end = Fraction(metre.beat), Fraction(after.beat)
             if metre.quarters < after.quarters and end - beat == metre.quarters:  # a pickup

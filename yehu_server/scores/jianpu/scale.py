@@ -24,6 +24,7 @@ class Scale:
         self.mode = DEFAULT_MODE  # of 二四谱
         self.characters = characters or ERSIPU  # semitones above do, in this notation
         self._key = key
+        self.fifths = self._fifths()  # the sharps of the key, below 0 flats; None: none is written
         self.first_key, self.has_own = key, False  # the first that is written, if one is
         self._octave = 0
 
@@ -35,6 +36,7 @@ class Scale:
         letter, sign = found[2] or found[5], found[3] or found[4]
         do = SEMITONES[letter.upper()] - MAJOR[int(found[1]) - 1]
         self._key = (do - LOWEST_DO) % 12.0 + LOWEST_DO + {"#": 1, "b": -1}.get(sign or "", 0)
+        self.fifths = self._fifths()
         if not self.has_own:
             self.has_own, self.first_key = True, self._key
         return True
@@ -80,9 +82,7 @@ class Scale:
         own = degrees[at] + self._above_do(figure) - base + figure.alter
         return around(at, own, lambda to: degrees[to % count] + 12.0 * (to // count))
 
-    @property
-    def fifths(self) -> int | None:
-        """The sharps of the key, below 0 flats; None where none is written."""
+    def _fifths(self) -> int | None:
         return None if self._key is None else nearest_key(7 * round(self._key))
 
     def living(self, figure: Figure) -> str:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.encodings import LATIN, encoding_of, guess_line
@@ -29,8 +29,7 @@ _LYRICS = ("L:", "H:")
 _TEMPO_COMMENT = re.compile(r"%%\s*tempo:\s*(\S+)\s*")
 
 
-@dataclass(frozen=True, slots=True)
-class Word:
+class Word(NamedTuple):
     """A word and its place, counted from 1."""
 
     text: str
@@ -38,8 +37,7 @@ class Word:
     column: int
 
 
-@dataclass(frozen=True, slots=True)
-class Header:
+class Header(NamedTuple):
     """A line such as ``title=...``; the name in lower case."""
 
     name: str

@@ -16,7 +16,8 @@ from yehu_server.scores.written.notated import MAX_BEATS, MAX_NOTES, Mark
 from yehu_server.scores.written.ornaments import Alters, around_in
 from yehu_server.scores.written.repeats import MAX_TIMES, BarLines
 from yehu_server.scores.written.swing import Swing, begin_of_beats, swing_notes
-from yehu_server.scores.written.voices import FINEST, RawBar, RawDirection, RawNote
+from yehu_server.scores.written.ticks import TICKS, Ticks, bounded, ticks_of
+from yehu_server.scores.written.voices import RawBar, RawDirection, RawNote
 
 MAX_DIVISIONS = 1 << 20  # of a quarter note
 LOWEST, HIGHEST = 0.0, 127.0  # MIDI notes
@@ -35,8 +36,9 @@ class BarReader:
         self._divisions = Fraction(1) if first is None else first
         self._fifths = 0
         self._transposed = 0.0  # semitones
-        self._metre = Fraction(4)
-        self._beat = Fraction(1)
+        self._lengths: dict[str | None, Ticks | None] = {}  # by how they are written
+        self._metre: Ticks = 4 * TICKS
+        self._beat: Ticks = TICKS
         self._ending: frozenset[int] = frozenset()  # that is open
         self._last_ending = (0, -1)  # the highest number of the last one, and its last bar
         self._bars = 0
@@ -47,12 +49,12 @@ class BarReader:
         self._dropped: set[tuple[tuple[str, str], float]] = set()
         self._alters: dict[tuple[str, str], Alters] = {}  # of this bar, by staves and voices
         self._wavy: set[tuple[str, str]] = set()  # voices in which a trill goes on
-        self._at = Fraction(0)
+        self._at: Ticks = 0
         self._bar = RawBar("", BarLines())
         self._signs = RepeatSigns()
         self._swing: Swing | None = None
-        self._swings: list[tuple[Fraction, Swing | None]] = []  # of this bar, and from where
-        self._last_length = Fraction(0)  # of the bar before
+        self._swings: list[tuple[Ticks, Swing | None]] = []  # of this bar, and from where
+        self._last_length: Ticks = 0  # of the bar before
 
     def read(self, measure: Element) -> RawBar:
         """Read one <measure>. Raises ScoreError where it is longer, or fuller, than any music."""
@@ -61,11 +63,11 @@ class BarReader:
         self._bars += 1
         if self._ending:
             self._last_ending = max(self._ending), self._bars
-        self._at = Fraction(0)
+        self._at = 0
         self._head = None
         self._graces = []
         self._alters = {}
-        self._swings = [(Fraction(0), self._swing)]
+        self._swings = [(0, self._swing)]
         directions = DirectionReader(bar.directions, lines.jumps, self._unknown)
         for child in measure:
             if child.tag == "note":
@@ -74,7 +76,7 @@ class BarReader:
                 self._attributes(child)
             elif child.tag in ("backup", "forward"):
                 step = self._duration(child)
-                self._at = max(self._at + (step if child.tag == "forward" else -step), Fraction(0))
+                self._at = max(self._at + (step if child.tag == "forward" else -step), 0)
                 bar.length = max(bar.length, self._at)
             elif child.tag == "direction":
                 directions.read(child, self._at, self._offset(child))
@@ -87,9 +89,8 @@ class BarReader:
                 self._barline(child)
             elif child.tag in ("harmony", "figured-bass"):
                 self._warnings["chord symbols are not played"] += 1
-            if self._at.denominator > FINEST:  # divisions that change and change
-                self._at = self._at.limit_denominator(FINEST)
-            if self._at > MAX_BEATS:
+            self._at = bounded(self._at)  # divisions may change and change
+            if self._at > MAX_BEATS * TICKS:
                 raise ScoreError(f"has a bar longer than {MAX_BEATS} quarters")
         bar.notes = [note for note in bar.notes if "dropped" not in note.ties]
         tell(measure, bar.number, self._unknown)
@@ -118,7 +119,7 @@ class BarReader:
             if not is_even and not (0 < first < 100 and 0 < second < 100 and unit in SWUNG):
                 self._unknown[f"swing (bar {self._bar.number})"] += 1
             else:
-                self._swing = None if is_even else Swing(VALUES[unit], first, second)
+                self._swing = None if is_even else Swing(ticks_of(VALUES[unit]), first, second)
                 self._swings.append((self._at, self._swing))
 
     def _count(self, notes: int) -> None:
@@ -126,16 +127,22 @@ class BarReader:
         if self._notes > MAX_NOTES:
             raise ScoreError(f"has more than {MAX_NOTES} notes")
 
-    def _offset(self, direction: Element) -> Fraction:
-        offset = Fraction(int(number(direction.findtext("offset")))) / self._divisions
-        return max(self._at + offset, Fraction(0))
+    def _offset(self, direction: Element) -> Ticks:
+        text = direction.findtext("offset")
+        offset = Fraction(int(number(text))) / self._divisions if text else Fraction(0)
+        return max(self._at + ticks_of(offset), 0)
 
-    def _duration(self, element: Element) -> Fraction:
-        value = number(element.findtext("duration"))
-        if not 0.0 <= value <= MAX_BEATS * MAX_DIVISIONS:
+    def _duration(self, element: Element) -> Ticks:
+        text = element.findtext("duration")
+        if text not in self._lengths:
+            value = number(text)
+            is_usual = 0.0 <= value <= MAX_BEATS * MAX_DIVISIONS
+            length = Fraction(value if is_usual else 0.0).limit_denominator(MAX_DIVISIONS)
+            self._lengths[text] = ticks_of(length / self._divisions) if is_usual else None
+        found = self._lengths[text]
+        if found is None:
             self._warnings["durations below zero or beyond reason are left out"] += 1
-            return Fraction(0)
-        return Fraction(value).limit_denominator(MAX_DIVISIONS) / self._divisions
+        return found or 0
 
     # -- attributes and bar lines ------------------------------------------------------------
 
@@ -144,7 +151,7 @@ class BarReader:
             if child.tag == "divisions":
                 value = _divisions(child)
                 if value is not None:
-                    self._divisions = value
+                    self._divisions, self._lengths = value, {}
                 else:
                     self._warnings["divisions of zero or beyond reason are left out"] += 1
             elif child.tag == "key":
@@ -169,10 +176,11 @@ class BarReader:
             if count > 0 and 0 < kind <= 256:
                 quarters += Fraction(4 * count, kind)
         if 0 < quarters <= 1000:
-            self._metre = self._bar.metre = quarters
-            self._beat = Fraction(4, kind)
-            if kind >= 8 and quarters > 3 * self._beat and quarters % (3 * self._beat) == 0:
-                self._beat *= 3
+            self._metre = self._bar.metre = ticks_of(quarters)
+            beat = Fraction(4, kind)
+            if kind >= 8 and quarters > 3 * beat and quarters % (3 * beat) == 0:
+                beat *= 3
+            self._beat = ticks_of(beat)
 
     def _barline(self, barline: Element) -> None:
         lines = self._bar.lines
@@ -208,7 +216,7 @@ class BarReader:
 
     def _note(self, element: Element) -> None:
         is_grace = element.find("grace") is not None
-        length = Fraction(0) if is_grace else self._duration(element)
+        length = 0 if is_grace else self._duration(element)
         staff, own = element.findtext("staff") or "1", element.findtext("voice") or "1"
         note = RawNote(self._at, length, 0.0, (staff[:8], own[:8]), is_grace=is_grace)
         head = self._head
@@ -236,7 +244,8 @@ class BarReader:
         note.pitch = pitch
         note.turns = _numbers(element.get("time-only", ""))
         if note.is_grace:
-            note.length = VALUES.get((element.findtext("type") or "").strip(), Fraction(1, 2))
+            value = VALUES.get((element.findtext("type") or "").strip(), Fraction(1, 2))
+            note.length = ticks_of(value)
             grace = element.find("grace")
             note.is_after = grace is not None and grace.get("steal-time-previous") is not None
         elif length == 0:
@@ -278,7 +287,7 @@ class BarReader:
         """Leave out a note; what it is tied to is left out, too, and not struck."""
         if "start" in note.ties:
             self._dropped.add((note.voice, note.pitch))
-        note.ties = {*note.ties, "dropped"}
+        note.ties |= {"dropped"}
 
     def _pitch(self, element: Element) -> float | None:
         pitch = element.find("pitch")

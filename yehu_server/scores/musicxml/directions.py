@@ -1,13 +1,13 @@
 """Read directions of MusicXML: dynamics, hairpins, tempi, words and jumps."""
 
 from collections import Counter
-from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from yehu_server.scores.musicxml.elements import SCHEMA
 from yehu_server.scores.musicxml.marks import VALUES, number
 from yehu_server.scores.score import printable
 from yehu_server.scores.written.notated import DYNAMICS, FORCED, HIGHEST_TEMPO, LOWEST_TEMPO
+from yehu_server.scores.written.ticks import Ticks
 from yehu_server.scores.written.voices import RawDirection
 from yehu_server.scores.written.words import meaning_of
 
@@ -24,7 +24,7 @@ class DirectionReader:
         self._jumps = jumps
         self._unknown = unknown
 
-    def read(self, direction: Element, now: Fraction, at: Fraction) -> None:
+    def read(self, direction: Element, now: Ticks, at: Ticks) -> None:
         """Read one <direction>: what it says at a beat, and its <sound> at that or `now`."""
         sound = direction.find("sound")
         if direction.find("offset[@sound='yes']") is not None:
@@ -51,11 +51,11 @@ class DirectionReader:
                 self._jumps.add(tag)
 
     def _add(
-        self, at: Fraction, kind: str, name: str = "", value: float | None = None, which: str = ""
+        self, at: Ticks, kind: str, name: str = "", value: float | None = None, which: str = ""
     ) -> None:
         self._found.append(RawDirection(at, kind, name, value, which))
 
-    def dynamics(self, dynamics: Element, at: Fraction) -> None:
+    def dynamics(self, dynamics: Element, at: Ticks) -> None:
         """Read one <dynamics>."""
         for child in dynamics:
             name = child.tag
@@ -68,7 +68,7 @@ class DirectionReader:
             elif child.tag in SCHEMA:
                 self._unknown[f"dynamics {printable(name)}"] += 1
 
-    def sound(self, sound: Element, at: Fraction, *, with_dynamics: bool = True) -> None:
+    def sound(self, sound: Element, at: Ticks, *, with_dynamics: bool = True) -> None:
         """Read one <sound>."""
         if sound.get("time-only"):
             self._unknown["time-only of a sound"] += 1
@@ -83,7 +83,7 @@ class DirectionReader:
             self._add(at, "sign", "pizz" if plucked == "yes" else "arco")
         self._jumps.update(name for name in JUMPS if sound.get(name))
 
-    def _metronome(self, metronome: Element, at: Fraction) -> None:
+    def _metronome(self, metronome: Element, at: Ticks) -> None:
         unit = VALUES.get((metronome.findtext("beat-unit") or "").strip())
         dots = len(metronome.findall("beat-unit-dot")[:3])
         minute = (metronome.findtext("per-minute") or "").split()
@@ -95,7 +95,7 @@ class DirectionReader:
         if LOWEST_TEMPO <= tempo <= HIGHEST_TEMPO:
             self._add(at, "tempo", "figures", tempo)
 
-    def _words(self, text: str, at: Fraction, *, has_tempo: bool, jumps: bool) -> None:
+    def _words(self, text: str, at: Ticks, *, has_tempo: bool, jumps: bool) -> None:
         words = text.strip()[:LONGEST_WORDS]
         if not words:
             return

@@ -9,6 +9,7 @@ from fractions import Fraction
 from xml.etree.ElementTree import Element
 
 from yehu_server.scores.musicxml.marks import VALUES, number
+from yehu_server.scores.written.ticks import Ticks, ticks_of
 from yehu_server.scores.written.voices import RawBar, RawNote
 
 MAX_REPEATED = 8  # bars that a sign repeats
@@ -19,12 +20,12 @@ class RepeatSigns:
 
     def __init__(self) -> None:
         self._bars: dict[str, int] = {}  # how many bars each of these repeats
-        self._beats: dict[str, Fraction] = {}  # the length of the beat
-        self._spans: list[tuple[str, Fraction, Fraction, Fraction]] = []  # and where, in this bar
-        self._begun: dict[str, Fraction] = {}
+        self._beats: dict[str, Ticks] = {}  # the length of the beat
+        self._spans: list[tuple[str, Ticks, Ticks, Ticks]] = []  # and where, in this bar
+        self._begun: dict[str, Ticks] = {}
         self._before: list[RawBar] = []  # the last bars
 
-    def read(self, style: Element, at: Fraction, beat: Fraction) -> None:
+    def read(self, style: Element, at: Ticks, beat: Ticks) -> None:
         """Read a <measure-style> at a place of its bar, in a metre of such beats."""
         staff = style.get("number", "")[:8]
         for sign in style.iterfind("measure-repeat"):
@@ -38,9 +39,10 @@ class RepeatSigns:
                 value = VALUES.get((sign.findtext("slash-type") or "").strip())
                 dots = len(sign.findall("slash-dot")[:3])
                 self._begun[staff] = at
-                self._beats[staff] = beat if value is None else value * (2 - Fraction(1, 2**dots))
+                dotted = ticks_of((value or 0) * (2 - Fraction(1, 2**dots)))
+                self._beats[staff] = beat if value is None else dotted
 
-    def _end(self, staff: str, at: Fraction) -> None:
+    def _end(self, staff: str, at: Ticks) -> None:
         if staff in self._begun:
             self._spans.append((staff, self._begun.pop(staff), at, self._beats[staff]))
 
@@ -51,7 +53,7 @@ class RepeatSigns:
             if count > len(self._before) or _of_staff(bar, staff):
                 continue
             source = self._before[-count]
-            bar.notes += [_copy(note, Fraction(0)) for note in _of_staff(source, staff)]
+            bar.notes += [_copy(note, 0) for note in _of_staff(source, staff)]
             bar.length = max(bar.length, source.length)
         going = [*self._begun]
         for staff in going:
@@ -59,16 +61,14 @@ class RepeatSigns:
         for staff, begin, end, beat in self._spans:
             self._fill_beats(bar, staff, begin, end, beat)
         self._spans = []
-        self._begun = dict.fromkeys(going, Fraction(0))
+        self._begun = dict.fromkeys(going, 0)
         self._before = [*self._before[1 - MAX_REPEATED :], bar]
         return len(bar.notes) - before
 
-    def _fill_beats(
-        self, bar: RawBar, staff: str, begin: Fraction, end: Fraction, beat: Fraction
-    ) -> None:
+    def _fill_beats(self, bar: RawBar, staff: str, begin: Ticks, end: Ticks, beat: Ticks) -> None:
         own = _of_staff(bar, staff)
         last = self._before[-1] if self._before else bar
-        beats = int(max(end - begin, Fraction(0)) / beat)
+        beats = int(max(end - begin, 0) // beat)
         source = [n for n in own if begin - beat <= n.at < begin]
         moved = beat
         if begin < beat:  # the beat before is in the bar before
@@ -84,7 +84,5 @@ def _of_staff(bar: RawBar, staff: str) -> list[RawNote]:
     return [note for note in bar.notes if staff in ("", note.voice[0])]
 
 
-def _copy(note: RawNote, later: Fraction) -> RawNote:
-    return replace(
-        note, at=note.at + later, marks=[*note.marks], ties={*note.ties}, ends=[*note.ends]
-    )
+def _copy(note: RawNote, later: Ticks) -> RawNote:
+    return replace(note, at=note.at + later, marks=[*note.marks], ends=[*note.ends])

@@ -4,16 +4,15 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import groupby
-from typing import TypeVar
+from typing import Any
 
 from yehu_server.errors import ScoreError
 from yehu_server.scores.score import COMMON_TIME, KeySignature, Metre
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Bar, Part, Tempo, Written
 from yehu_server.scores.written.repeats import BarLines, left_out, order_of
-from yehu_server.scores.written.voices import FINEST, RawBar, parts_of
-
-T = TypeVar("T")
+from yehu_server.scores.written.ticks import TICKS, Ticks, bounded, metre_at, quarters_of
+from yehu_server.scores.written.voices import RawBar, parts_of
 
 MAX_KINDS = 100  # of unknown marks that are named
 MAX_REPEATED, MAX_OFTEN = 10_000, 4  # notes, or times as many as written
@@ -58,7 +57,7 @@ def assembled(
         tuple(found),
         tuple(Tempo(beat, tempo) for beat, (_, tempo) in sorted(tempi.items())),
         tuple(_metres(longest, played)),
-        tuple(Bar(begin, longest[number].number) for number, begin in played),
+        tuple(Bar(quarters_of(begin), longest[number].number) for number, begin in played),
         title,
         dict(unknown.most_common(MAX_KINDS)),
         tuple(lines_of_warnings),
@@ -76,13 +75,13 @@ def _left_out_line(missing: Sequence[int], bars: Sequence[RawBar]) -> str:
     return f"{len(missing)} {plural} not played, which repeats or jumps pass over: {named}"
 
 
-def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Fraction]]) -> Iterable[KeySignature]:
+def _keys(bars: Sequence[RawBar], played: Iterable[tuple[int, Ticks]]) -> Iterable[KeySignature]:
     holding, last = _holding(bar.fifths for bar in bars), None
     for number, begin in played:
         fifths = holding[number]
         if fifths is not None and fifths != last:
             last = fifths
-            yield KeySignature(begin, fifths)
+            yield KeySignature(quarters_of(begin), fifths)
 
 
 def _check_amount(parts_bars: list[list[RawBar]], order: list[int]) -> None:
@@ -114,26 +113,24 @@ def _lines(parts_bars: list[list[RawBar]], number: int) -> BarLines:
 
 def _timed(
     parts_bars: list[list[RawBar]], order: list[int]
-) -> tuple[list[tuple[int, Fraction]], Fraction]:
+) -> tuple[list[tuple[int, Ticks]], Ticks]:
     """The beats at which bars begin, as the fullest part has them, and that of the end."""
-    lengths: dict[int, Fraction] = {}
+    lengths: dict[int, Ticks] = {}
     metres = _holding(bar.metre for bar in max(parts_bars, key=len, default=[]))
-    begin = Fraction(0)
+    begin: Ticks = 0
     played = []
     for number in order:
         if number not in lengths:
             own = [bars[number] for bars in parts_bars if number < len(bars)]
             lengths[number] = _length(own, metres[number])
         played.append((number, begin))
-        begin += lengths[number]
-        if begin.denominator > FINEST:
-            begin = begin.limit_denominator(FINEST)
-        if begin > notated.MAX_BEATS:
+        begin = bounded(begin + lengths[number])
+        if begin > notated.MAX_BEATS * TICKS:
             raise ScoreError(f"is longer than {notated.MAX_BEATS} quarters, with its repeats")
     return played, begin
 
 
-def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
+def _length(bars: Sequence[RawBar], metre: Ticks | None) -> Ticks:
     """The length of a bar in all parts; a rest that is too long in one part does not count."""
     lengths = {bar.length for bar in bars if bar.notes} or {bar.length for bar in bars}
     if metre is None or len(lengths) == 1 or max(lengths) <= metre:
@@ -142,25 +139,25 @@ def _length(bars: Sequence[RawBar], metre: Fraction | None) -> Fraction:
     return max([metre, *sounding])
 
 
-def _holding(written: Iterable[T | None]) -> list[T | None]:
+def _holding(written: Iterable[Any]) -> list[Any]:
     """The value that holds at each bar, such as the metre: the last written one, or None."""
-    held: T | None = None
+    held = None
     return [held := held if own is None else own for own in written]
 
 
-def _metres(bars: list[RawBar], played: list[tuple[int, Fraction]]) -> list[Metre]:
+def _metres(bars: list[RawBar], played: list[tuple[int, Ticks]]) -> list[Metre]:
     """The time signatures, in order; a short first bar counts back from the second."""
     metres = [COMMON_TIME]
     holding = _holding(bar.metre for bar in bars)
     for number, begin in played:
-        quarters = holding[number] if number < len(holding) else None
-        if quarters is not None and float(quarters) != metres[-1].quarters:
-            metres.append(Metre(float(begin), float(quarters)))
+        metre = holding[number] if number < len(holding) else None
+        if metre is not None and float(metre / TICKS) != metres[-1].quarters:
+            metres.append(metre_at(begin, metre))
     if bars and played and len(played) > 1 and played[0][0] == 0:
-        quarters = holding[0] or Fraction(4)
+        metre = holding[0] or 4 * TICKS
         upbeat = played[1][1]
-        if upbeat < quarters:  # bars are counted from the first whole one
-            metres.insert(1, Metre(0.0, float(quarters)))
-            metres.append(Metre(float(upbeat), float(holding[min(1, len(bars) - 1)] or quarters)))
+        if upbeat < metre:  # bars are counted from the first whole one
+            metres.insert(1, metre_at(0, metre))
+            metres.append(metre_at(upbeat, holding[min(1, len(bars) - 1)] or metre))
             metres.sort(key=lambda metre: metre.beat)
     return metres

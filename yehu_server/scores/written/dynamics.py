@@ -4,14 +4,15 @@ from bisect import bisect_left, bisect_right
 from fractions import Fraction
 from itertools import repeat
 from operator import itemgetter
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Note, Part, Sign, Span
+from yehu_server.scores.written.notated import DYNAMICS, FORCED, HAIRPINS, Part, Sign, Span
 from yehu_server.scores.written.tempo import WrittenClock
 
 Array = Any
+Side = Literal["left", "right"]
 
 DEFAULT = float(DYNAMICS["mf"])
 # In steps of velocity, by ear.
@@ -35,7 +36,7 @@ class Loudness:
         signs = [s for s in part.signs if s.name in LEVELS or s.name == "velocity"]
         hairpins = [s for s in part.spans if s.name in HAIRPINS and s.end > s.begin]
         forced = [sign.beat for sign in part.signs if sign.name in FORCED]
-        accents = not all(note.names.isdisjoint(ACCENTS) for note in part.notes)
+        accents = not all(names.isdisjoint(ACCENTS) for names in {*part.names})
         self.is_marked = bool(signs or hairpins or forced or accents)
         self._forced = _first_notes(part, [sign for sign in part.signs if sign.name in FORCED])
         # Loudness at breakpoints, joined by straight lines; at a jump the same beat stands twice.
@@ -75,6 +76,7 @@ class Loudness:
             self._add(max(float(change.end), beat), min(max(aim, SOFTEST), LOUDEST))
 
         self._columns = np.array(self._beats), np.array(self._levels)
+        self._range = self._ranges()
 
     def _reached(self, beat: Fraction) -> float:
         """The beat at which a sign is complete: at once, or soon where a note is held over it."""
@@ -92,10 +94,6 @@ class Loudness:
         """Loudness (velocity) at a beat, after what is written there."""
         return self._between(bisect_right(self._beats, beat), beat)
 
-    def _before(self, beat: float) -> float:
-        """Loudness just before what is written at a beat."""
-        return self._between(bisect_left(self._beats, beat), beat)
-
     def _between(self, after: int, beat: float) -> float:
         """Loudness at a beat that lies before the breakpoint of a number."""
         if after == 0:
@@ -106,44 +104,60 @@ class Loudness:
         end, aim = self._beats[after], self._levels[after]
         return level + (aim - level) * (beat - begin) / (end - begin)
 
-    def _levels_at(self, beats: Array) -> Array:
-        """Loudness at beats [shape=(beats,)], after what is written there."""
+    def _levels_at(self, beats: Array, side: Side = "right") -> Array:
+        """Loudness at beats [shape=(beats,)], after what is written there; or before it (left)."""
         known, levels = self._columns
-        after = np.searchsorted(known, beats, side="right")
+        if not len(known):
+            return np.full(len(beats), DEFAULT)
+        after = np.searchsorted(known, beats, side=side)
         at, to = np.maximum(after - 1, 0), np.minimum(after, len(known) - 1)
         length = np.where(at == to, 1.0, known[to] - known[at])
         between = levels[at] + (levels[to] - levels[at]) * (beats - known[at]) / length
         return np.where(after == 0, DEFAULT, between)
 
-    def _range(self, note: Note) -> tuple[float, float]:
-        """The least and the largest loudness while a note sounds."""
-        if not self._beats:
-            return DEFAULT, DEFAULT
-        begin, end = note.begins_at, note.ends_at
-        first, last = bisect_right(self._beats, begin), bisect_left(self._beats, end)
-        levels = [self.at(begin), *self._levels[first:last], self._before(end)]
-        return min(levels), max(levels)
+    def _ranges(self) -> tuple[Array, Array]:
+        """The least and the largest loudness while each note sounds."""
+        begins, ends = np.array(self._part.begins_at), np.array(self._part.ends_at)
+        known, levels = self._columns
+        first, last = np.searchsorted(known, begins, "right"), np.searchsorted(known, ends, "left")
+        sides = self._levels_at(begins), self._levels_at(ends, "left")
+        least, largest = np.minimum(*sides), np.maximum(*sides)
+        inner = np.flatnonzero(first < last)  # notes within which something is written
+        slices = np.column_stack((first[inner], last[inner])).ravel()
+        padded = np.append(levels, DEFAULT)
+        for found, each in ((least, np.minimum), (largest, np.maximum)):
+            if len(inner):
+                found[inner] = each(found[inner], each.reduceat(padded, slices)[::2])
+        return least, largest
 
-    def velocity(self, note: Note) -> int:
-        """The velocity of a note: its loudest moment."""
-        loudest = self._range(note)[1]
-        name = self._forced.get(note.begins_at) if self._forced else None
-        if name is not None:
-            loudest = max(float(DYNAMICS[FORCED[name][0]]), loudest + FORCED_BY)
-        if note.marks:
-            loudest += sum(ACCENTS.get(name, 0.0) for name in note.names)
-        return round(min(max(loudest, SOFTEST), LOUDEST))
+    def velocities(self) -> Array:
+        """The velocity of each note: its loudest moment."""
+        loudest = self._range[1].copy()
+        for at, begins_at in enumerate(self._part.begins_at if self._forced else ()):
+            if (name := self._forced.get(begins_at)) is not None:
+                loudest[at] = max(float(DYNAMICS[FORCED[name][0]]), loudest[at] + FORCED_BY)
+        accents = {names: sum(ACCENTS.get(n, 0.0) for n in names) for names in {*self._part.names}}
+        loudest += np.array([accents[names] for names in self._part.names])
+        return np.rint(np.clip(loudest, SOFTEST, LOUDEST)).astype(np.int64)
 
-    def swell(self, note: Note) -> tuple[Array, Array]:
-        """Beats of a note, and the dB that it is below its loudest there; one where it stays."""
-        begin, length = note.begins_at, float(note.length)
-        least, largest = self._range(note)
-        if largest - least < MIN_SWELL:
-            return np.array([begin]), np.zeros(1)
-        length_s = self._clock.seconds(note.ends_at) - self._clock.seconds(begin)
-        count = min(max(int(length_s / SWELL_S), 2), MAX_STEPS)
-        beats = begin + length * np.arange(count) / count
-        return beats, np.maximum(largest - self._levels_at(beats), 0.0) * DB_PER_STEP
+    def swells(self, first: int, last: int) -> tuple[Array, Array, Array, Array]:
+        """Steps of some notes: the note's number, the step's, the beat, and how far below (dB).
+
+        That is below the loudest moment of the note; a note that stays has one step.
+        """
+        notes = slice(first, last)
+        least, largest = (each[notes] for each in self._range)
+        part = self._part
+        begins, ends = np.array(part.begins_at[notes]), np.array(part.ends_at[notes])
+        stays = largest - least < MIN_SWELL
+        lengths_s = self._clock.seconds_of(ends) - self._clock.seconds_of(begins)
+        counts = np.where(stays, 1, np.clip((lengths_s / SWELL_S).astype(np.int64), 2, MAX_STEPS))
+        number = np.repeat(np.arange(len(counts)), counts)
+        step = np.arange(len(number)) - np.repeat(np.cumsum(counts) - counts, counts)
+        lengths = np.array([float(note.length) for note in part.notes[notes]])
+        beats = begins[number] + lengths[number] * step / counts[number]
+        below = np.maximum(largest[number] - self._levels_at(beats), 0.0) * DB_PER_STEP
+        return number, step, beats, np.where(stays[number], 0.0, below)
 
 
 def _level_of(sign: Sign) -> float:

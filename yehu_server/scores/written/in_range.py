@@ -37,7 +37,9 @@ def moved_part(part: Part, within: NoteRange = YEHU) -> tuple[Part, Octaves]:
         return part, octaves
     moves = (12.0 * octaves.of_notes).tolist()
     notes = tuple(_moved(note, by) for note, by in zip(part.notes, moves, strict=True))
-    return replace(part, notes=notes), octaves
+    found = replace(part, notes=notes)
+    vars(found).update(begins_at=part.begins_at, ends_at=part.ends_at, names=part.names)
+    return found, octaves
 
 
 def moved(written: Written, plays: Sequence[int], within: NoteRange = YEHU) -> tuple[Written, str]:
@@ -65,7 +67,11 @@ def line_of(moves: Sequence[tuple[str, Octaves]], within: NoteRange = YEHU) -> s
 
 def spans_of(parts: Sequence[Part], within: NoteRange = YEHU) -> NoteSpans:
     """When the notes of parts sound (quarters), and their pitches."""
-    pitches = [_pitches(note, within) for part in parts for note in part.notes]
+    pitches = [
+        _pitches(note, names, within)
+        for part in parts
+        for note, names in zip(part.notes, part.names, strict=True)
+    ]
     low, high = np.array(pitches, float).reshape(-1, 2).T
     begins = np.concatenate([np.zeros(0), *(part.begins_at for part in parts)])
     ends = np.concatenate([np.zeros(0), *(part.ends_at for part in parts)])
@@ -73,12 +79,12 @@ def spans_of(parts: Sequence[Part], within: NoteRange = YEHU) -> NoteSpans:
     return NoteSpans(begins, ends, low, high, number)
 
 
-def _pitches(note: Note, within: NoteRange) -> tuple[float, float]:
+def _pitches(note: Note, names: frozenset[str], within: NoteRange) -> tuple[float, float]:
     """The lowest and the highest pitch of a note; NaN where it has none.
 
     A harmonic is as high as it is written: its finger touches an open string.
     """
-    if not (note.marks or note.before or note.after):
+    if not (note.before or note.after or "harmonic" in names):
         return note.pitch, note.pitch
     pitches = [grace.pitch for grace in (*note.before, *note.after)]
     if harmonic_of(note, within) is None:
@@ -89,7 +95,7 @@ def _pitches(note: Note, within: NoteRange) -> tuple[float, float]:
 def _moved(note: Note, by: float) -> Note:
     pitch = note.pitch + by
     if not (note.before or note.after):
-        return note._replace(pitch=pitch)
+        return Note(note.beat, note.length, pitch, note.marks, contour=note.contour)
     before, after = (
         tuple(grace._replace(pitch=grace.pitch + by) for grace in graces)
         for graces in (note.before, note.after)

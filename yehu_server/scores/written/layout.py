@@ -5,6 +5,7 @@ from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 
 from yehu_server.scores.written.notated import (
     LONGEST_CHANGE,
@@ -215,6 +216,7 @@ def spelled(pitch: float, fifths: int) -> tuple[int, float, int]:
     return letter, alter + round(pitch - key, 6), octave
 
 
+@lru_cache(maxsize=1024)
 def name_of(pitch: float, fifths: int) -> str:
     """The name of a pitch in a key, such as Bb4, or A4+12 (cents)."""
     letter, alter, octave = spelled(pitch, fifths)

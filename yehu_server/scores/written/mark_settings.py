@@ -1,7 +1,8 @@
 """The marks of a note as values of parameters, mostly by ear (docs/scores.md)."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from operator import itemgetter
 from typing import NamedTuple
@@ -23,6 +24,7 @@ ATTACK, RELEASE = "/playing/attack", "/playing/release"
 GAIN = "/body/gain"
 
 DOWN, UP, INNER, OUTER = 1.0, -1.0, 1.0, 2.0
+STRING_SIGNS = {"inner-string": INNER, "outer-string": OUTER, "either-string": 0.0}
 # Strokes a second of an unmeasured tremolo, and its depth: those of the gesture.
 _TREMOLO = ARTICULATIONS[NUMBER["tremolo"]]
 QUICK_TREMOLO, DEEP = _TREMOLO.tremolo, _TREMOLO.tremolo_depth
@@ -79,9 +81,8 @@ def harmonics_of(within: NoteRange) -> Mapping[float, Node]:
 PLUCKED_DB = -3.5  # beside bowed notes: the peaks of plucked ones are some 8 dB higher
 
 
-@dataclass
-class Active:
-    """The signs that hold at a beat of a part: `take` each as it comes."""
+class Active(NamedTuple):
+    """The signs that hold at a beat of a part."""
 
     plucked: bool = False
     slurred: bool = False
@@ -94,35 +95,38 @@ class Active:
     is_forced: bool = False
     vibrato: float | None = None
 
-    def take(self, sign: Sign) -> None:
-        """Let a sign hold from here on."""
-        name = sign.name
+    def with_sign(self, sign: Sign) -> Active:  # noqa: PLR0911 - one for each kind
+        """The same with a sign that holds from here on."""
+        name, value = sign.name, sign.value
+        if name in FORCED:
+            return self._replace(is_forced=True)
         if name in ("pizz", "arco"):
-            self.plucked = name == "pizz"
-            self.tremolo = self.tremolo and self.plucked
-            self.articulation = 0.0
-        elif name in ("legato", "non-legato"):
-            self.slurred = name == "legato"
-        elif name in ("staccato", "non-staccato"):
-            self.short = name == "staccato"
-        elif name == "tremolo":
-            self.tremolo = True
-        elif name in PLACES:
-            self.place = name
-        elif name == "ordinary":
-            self.place, self.tremolo, self.short, self.articulation = "", False, False, 0.0
-        elif name == "articulation":
-            self.articulation = sign.value or 0.0
-        elif name == "gesture":
-            self.gesture = sign.value or 0.0
-        elif name in ("inner-string", "outer-string", "either-string"):
-            self.string = {"i": INNER, "o": OUTER, "e": 0.0}[name[0]]
-        elif name == "vibrato":
-            self.vibrato = VIBRATO_CENTS if sign.value is None else sign.value
-        self.is_forced = self.is_forced or name in FORCED
+            plucked = name == "pizz"
+            return self._replace(
+                plucked=plucked, tremolo=self.tremolo and plucked, articulation=0.0
+            )
+        if name in ("legato", "non-legato"):
+            return self._replace(slurred=name == "legato")
+        if name in ("staccato", "non-staccato"):
+            return self._replace(short=name == "staccato")
+        if name == "tremolo":
+            return self._replace(tremolo=True)
+        if name in PLACES:
+            return self._replace(place=name)
+        if name == "ordinary":
+            return self._replace(place="", tremolo=False, short=False, articulation=0.0)
+        if name == "articulation":
+            return self._replace(articulation=value or 0.0)
+        if name == "gesture":
+            return self._replace(gesture=value or 0.0)
+        if name in STRING_SIGNS:
+            return self._replace(string=STRING_SIGNS[name])
+        if name == "vibrato":
+            return self._replace(vibrato=VIBRATO_CENTS if value is None else value)
+        return self
 
 
-PLAIN = Active()  # where no sign holds; never changed
+PLAIN = Active()  # where no sign holds
 
 
 def actives_of(part: Part) -> list[Active]:
@@ -130,10 +134,10 @@ def actives_of(part: Part) -> list[Active]:
     ordered = sorted(((float(sign.beat), sign) for sign in part.signs), key=itemgetter(0))
     signs, now, found = ordered[::-1], PLAIN, []
     for begins_at in part.begins_at:
-        if now.gesture or now.is_forced or (signs and signs[-1][0] <= begins_at):
-            now = replace(now, gesture=0.0, is_forced=False)
+        if now.gesture or now.is_forced:
+            now = now._replace(gesture=0.0, is_forced=False)
         while signs and signs[-1][0] <= begins_at:
-            now.take(signs.pop()[1])
+            now = now.with_sign(signs.pop()[1])
         found.append(now)
     return found
 
@@ -154,9 +158,7 @@ def is_plucked(note: Note, active: Active) -> bool:
 
 def values_of(note: Note, active: Active, quarter_s: float, within: NoteRange = YEHU) -> Values:
     """Return the parameters that a note's marks and the signs before it set, by address."""
-    if active is PLAIN and note.names <= SET_NOTHING:
-        return {}
-    values = {} if active is PLAIN else _held(active)
+    values = _held(active)
     number = articulation_of(note, active, quarter_s)
     if not (note.marks or values or active.plucked or number):
         return values

@@ -8,7 +8,7 @@ notes since the beginning, exact, with all repeats unfolded. Pitches are MIDI no
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -140,7 +140,7 @@ class Mark(NamedTuple):
 NO_NAMES = frozenset[str]()
 
 
-@lru_cache
+@lru_cache(maxsize=4096)
 def _names_of(marks: tuple[Mark, ...]) -> frozenset[str]:
     return frozenset(mark.name for mark in marks)
 
@@ -185,21 +185,12 @@ class Note(NamedTuple):
         under, its_under = beat.denominator, length.denominator
         return (beat.numerator * its_under + length.numerator * under) / (under * its_under)
 
-    def longer(self, by: Fraction, more: Iterable[Mark], late: Fraction) -> Note:
-        """The same note, held on with more marks; a fermata of them begins `late` in it."""
-        marks = [
-            mark._replace(second=float(late) or None) if mark.name == "fermata" else mark
-            for mark in more
-            if self.marked(mark.name) is None
-        ]
-        return self._replace(length=self.length + by, marks=(*self.marks, *marks))
-
     @property
     def held_from(self) -> Fraction:
         """The beat from which a fermata holds it, if it has one."""
         mark = self.marked("fermata")
         late = mark.second if mark is not None else None
-        return self.beat + Fraction(late or 0).limit_denominator(5040)
+        return self.beat + Fraction(late).limit_denominator(5040) if late else self.beat
 
     def marks_at(self, beat: Fraction) -> list[Mark]:
         """The marks to be written where it begins, or at what it is tied to."""
@@ -251,7 +242,12 @@ class Part:
     @cached_property
     def begins_at(self) -> list[float]:
         """The beats at which its notes begin, as floats."""
-        return [note.begins_at for note in self.notes]
+        return [note.beat.numerator / note.beat.denominator for note in self.notes]
+
+    @cached_property
+    def names(self) -> list[frozenset[str]]:
+        """The names of its notes' marks."""
+        return [_names_of(note.marks) if note.marks else NO_NAMES for note in self.notes]
 
     @cached_property
     def ends_at(self) -> list[float]:

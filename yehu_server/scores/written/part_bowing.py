@@ -1,9 +1,9 @@
 """The strokes of a written part: when each note begins and ends, and which notes share a bow."""
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Sequence
-from itertools import accumulate, pairwise
-from typing import NamedTuple
+from itertools import accumulate
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,6 +28,7 @@ BOWING_MARKS = {
     "pizzicato",
 }  # fmt: skip
 APART = {"staccato", "staccatissimo", "spiccato", "portato", "breath"}
+Array = Any
 BOWING_SIGNS = {"pizz", "legato", "non-legato", "staccato", "tremolo"}
 
 
@@ -45,53 +46,56 @@ def has_bowing(part: Part) -> bool:
     """Whether a part says which notes share a bow, or how they are bowed."""
     return (
         any(span.name == "slur" for span in part.spans)
-        or not all(BOWING_MARKS.isdisjoint(note.names) for note in part.notes)
+        or not all(BOWING_MARKS.isdisjoint(names) for names in {*part.names})
         or any(sign.name in BOWING_SIGNS for sign in part.signs)
     )
 
 
 def bowed(part: Part, actives: Sequence[Active], clock: WrittenClock) -> list[Played]:
     """Return each note of a part as it is played; `actives` are the signs that hold at each."""
-    notes = part.notes
+    notes, names = part.notes, part.names
     slurs, *sliding = (_Over(part.spans, name) for name in ("slur", *SLIDES))
-    slides = dict(zip(SLIDES, sliding, strict=True))
-    breaths = sorted(sign.beat for sign in part.signs if sign.name == "breath")
-    silences = {sign.beat for sign in part.signs if sign.name == "caesura"}
-    played = []
-    begins, ends = part.begins_at, part.ends_at
-    times = (clock.seconds_of(np.array(beats)).tolist() for beats in (begins, ends))
-    for note, active, begin_s, written_end_s in zip(notes, actives, *times, strict=True):
-        end_s = written_end_s
-        if note.marks or active.short:
-            end_s = _sounding_end(note, active, begin_s, end_s, slurs.over(note))
-        if breaths:
-            at = bisect_right(breaths, note.beat)
-            if at < len(breaths) and breaths[at] <= note.end:
-                end_s = _breathe(begin_s, end_s)
-        if silences and note.end in silences:
-            end_s -= min(CAESURA_S, 0.9 * (end_s - begin_s))
-        played.append(Played(note, begin_s, end_s))
-    for at, (one, other) in enumerate(pairwise(notes)):
-        beat = ends[at]
-        if beat != begins[at + 1] or is_plucked(other, actives[at + 1]):
+    begins, ends = np.array(part.begins_at), np.array(part.ends_at)
+    begins_s, ends_s = clock.seconds_of(begins).tolist(), clock.seconds_of(ends).tolist()
+    are_slurred = slurs.over(begins, ends).tolist()
+    for at, (its_names, active) in enumerate(zip(names, actives, strict=True)):
+        if its_names or active.short:
+            ends_s[at] = _sounding_end(
+                notes[at], its_names, active, begins_s[at], ends_s[at], are_slurred[at]
+            )
+    _breathe_by_signs(part, begins_s, ends_s)
+    played = [*map(Played, notes, begins_s, ends_s)]
+    joined, *slides = (each.join(ends[:-1]) for each in (slurs, *sliding))
+    joined |= np.array([active.slurred for active in actives[:-1]], bool)
+    follow = (ends[:-1] == begins[1:]) & np.logical_or.reduce([joined, *slides])
+    for at in np.flatnonzero(follow).tolist():
+        one, other = notes[at], notes[at + 1]
+        if is_plucked(other, actives[at + 1]):
             continue
-        slide = next((name for name in SLIDES if slides[name].joins(beat)), "")
+        slide = next((name for name, own in zip(SLIDES, slides, strict=True) if own[at]), "")
         if slide and not other.before:
             played[at + 1] = _slid_to(played[at], played[at + 1], slide)
             played[at] = played[at]._replace(end_s=played[at + 1].begin_s)
-        is_slurred = slurs.joins(beat) or actives[at].slurred
-        if (slide or is_slurred) and _can_slur(one, other):
+        if APART.isdisjoint(names[at]) and round(one.pitch) != round(other.pitch):
             length_s = played[at + 1].end_s - played[at + 1].begin_s
             end_s = played[at + 1].begin_s + min(OVERLAP_S, 0.5 * length_s)
-            played[at] = played[at]._replace(end_s=end_s)
-        elif is_slurred:
+            note, begin_s, _, direction, slide_s = played[at]
+            played[at] = Played(note, begin_s, end_s, direction, slide_s)
+        elif joined[at]:  # the second note needs a new stroke
             _go_on(played, at)
     return played
 
 
-def _can_slur(one: Note, other: Note) -> bool:
-    """Whether the second note can follow without a new stroke."""
-    return APART.isdisjoint(one.names) and round(one.pitch) != round(other.pitch)
+def _breathe_by_signs(part: Part, begins_s: list[float], ends_s: list[float]) -> None:
+    """End notes early before breaths and caesuras that are signs of the part."""
+    breaths = sorted(sign.beat for sign in part.signs if sign.name == "breath")
+    silences = {sign.beat for sign in part.signs if sign.name == "caesura"}
+    for at, note in enumerate(part.notes if breaths or silences else ()):
+        after = bisect_right(breaths, note.beat)
+        if after < len(breaths) and breaths[after] <= note.end:
+            ends_s[at] = _breathe(begins_s[at], ends_s[at])
+        if note.end in silences:
+            ends_s[at] -= min(CAESURA_S, 0.9 * (ends_s[at] - begins_s[at]))
 
 
 def _go_on(played: list[Played], at: int) -> None:
@@ -105,9 +109,13 @@ def _go_on(played: list[Played], at: int) -> None:
 
 
 def _sounding_end(
-    note: Note, active: Active, begin_s: float, end_s: float, is_slurred: bool
+    note: Note,
+    names: frozenset[str],
+    active: Active,
+    begin_s: float,
+    end_s: float,
+    is_slurred: bool,
 ) -> float:
-    names = note.names
     if not names and is_slurred:
         return end_s
     if "caesura" in names:
@@ -146,12 +154,11 @@ class _Over:
         # The farthest end of the spans up to each: enough to answer for any note.
         self._ends = [*accumulate((end for _, end in own), max)]
 
-    def joins(self, beat: float) -> bool:
-        """Whether a span is over both the note that ends and the one that begins at a beat."""
-        at = bisect_left(self._begins, beat) - 1
-        return at >= 0 and self._ends[at] >= beat
+    def join(self, beats: Array) -> Array:
+        """Whether a span is over both notes, one that ends and one that begins at each beat."""
+        return self.over(beats, beats)
 
-    def over(self, note: Note) -> bool:
-        """Whether a span is over a note."""
-        at = bisect_left(self._begins, note.ends_at) - 1
-        return at >= 0 and self._ends[at] >= note.begins_at
+    def over(self, begins: Array, ends: Array) -> Array:
+        """Whether a span is over each note, of those that begin and end at beats."""
+        at = np.searchsorted(self._begins, ends) - 1
+        return (at >= 0) & (np.append(self._ends, -1.0)[at] >= begins)

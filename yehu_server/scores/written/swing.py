@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
+from yehu_server.scores.written.ticks import Ticks, scaled
 from yehu_server.scores.written.voices import RawNote
 
 
@@ -11,24 +12,25 @@ from yehu_server.scores.written.voices import RawNote
 class Swing:
     """How pairs of notes are played that are written even."""
 
-    unit: Fraction  # quarters of each as written
+    unit: Ticks  # of each as written
     first: int  # the first lasts so long
     second: int  # beside the second
     is_of_pairs: bool = False  # whether only two notes of one unit each are played so
 
     @property
-    def delay(self) -> Fraction:
-        """Quarters by which the second is late."""
-        return self.unit * (self.first - self.second) / (self.first + self.second)
+    def delay(self) -> Ticks:
+        """By how much the second is late."""
+        return scaled(self.unit, Fraction(self.first - self.second, self.first + self.second))
 
 
-def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Fraction = Fraction(0)) -> None:
+def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Ticks = 0) -> None:
     """Delay what begins on an off-beat, and let the note before it last up to there.
 
     Beats are counted from `begin`. What is shorter than a unit, or follows such a note, stays even:
     the beat is divided otherwise there. So does abcjs where it is asked to swing; abc2midi, in
     hornpipes, asks for pairs.
     """
+    unit, delay = swing.unit, swing.delay
     voices: dict[tuple[str, str], list[RawNote]] = {}
     for note in notes:
         voices.setdefault(note.voice, []).append(note)
@@ -39,7 +41,7 @@ def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Fraction = Fracti
             if note.is_grace:
                 small.append(note)
                 continue
-            at, unit, delay = note.at, swing.unit, swing.delay
+            at = note.at
             is_off = (at - begin) % (2 * unit) == unit and note.length >= unit
             is_pair = before is not None and before.at + unit == at and before.length == unit
             if swing.is_of_pairs:
@@ -53,6 +55,6 @@ def swing_notes(notes: Iterable[RawNote], swing: Swing, begin: Fraction = Fracti
             before, small = note, []
 
 
-def begin_of_beats(length: Fraction, before: Fraction, metre: Fraction) -> Fraction:
-    """Where a bar's beats begin, in quarters since it does; an upbeat counts from its end."""
-    return length - metre if length < metre and before < metre else Fraction(0)
+def begin_of_beats(length: Ticks, before: Ticks, metre: Ticks) -> Ticks:
+    """Where a bar's beats begin, since it does; an upbeat counts from its end."""
+    return length - metre if length < metre and before < metre else 0

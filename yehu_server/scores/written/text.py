@@ -4,6 +4,7 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from functools import lru_cache
 from itertools import groupby
 from operator import itemgetter
 from typing import Any
@@ -119,6 +120,7 @@ def _graces(where: str, graces: tuple[Grace, ...], fifths: int) -> Iterator[str]
         yield f"{where}: {' '.join(name_of(grace.pitch, fifths) for grace in graces)}"
 
 
+@lru_cache(maxsize=4096)
 def _mixed(value: Fraction) -> str:
     """A number of quarters, such as 2 1/2."""
     whole, rest = divmod(value, 1)

@@ -7,17 +7,19 @@ of them. In voices ties are joined, spans closed and repeats unfolded.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
+from operator import attrgetter
 from typing import NamedTuple
 
 from yehu_server.scores.written import notated
 from yehu_server.scores.written.notated import Grace, Mark, Note, Part, Sign, Span
 from yehu_server.scores.written.ornaments import HALF, WHOLE, Around, filled
 from yehu_server.scores.written.repeats import BarLines
+from yehu_server.scores.written.ticks import TICKS, Ticks, length_of, quarters_of
 from yehu_server.scores.written.words import OpenSpan
 
-FINEST = 1 << 24  # the smallest part of a quarter note is this one
 # Where a tempo is from: of several at one beat the highest counts. What a program plays goes over
 # what is printed, and figures over words.
 RANKS = {"words": 0, "figures": 1, "playback": 2}
@@ -29,17 +31,17 @@ LONGEST_HAIRPIN = Fraction(32)  # in words, where no sign ends it
 
 @dataclass(slots=True)
 class RawNote:
-    """A note in its bar, before ties are joined; beats in quarters since the bar's beginning."""
+    """A note in its bar, before ties are joined; beats in ticks since the bar's beginning."""
 
-    at: Fraction
-    length: Fraction
+    at: Ticks
+    length: Ticks
     pitch: float
     voice: tuple[str, str]  # staff and voice
     marks: list[Mark] = field(default_factory=list)
     around: Around = (WHOLE, HALF)
     is_grace: bool = False
     is_after: bool = False  # a grace note that belongs to the note before it
-    ties: set[str] = field(default_factory=set)  # start, stop
+    ties: frozenset[str] = frozenset()  # start, stop
     # Spans that begin or end here: their name, `start` or `stop`, and their number.
     ends: list[tuple[str, str, str]] = field(default_factory=list)
     turns: frozenset[int] = frozenset()  # the passes of a repeat in which it sounds; empty: all
@@ -48,7 +50,7 @@ class RawNote:
 class RawDirection(NamedTuple):
     """A direction at a beat of its bar."""
 
-    at: Fraction
+    at: Ticks
     # Sign, wedge, hairpin (words, until the next dynamic), dashes, change (of tempo), back (to
     # the tempo before) or tempo.
     kind: str
@@ -66,90 +68,120 @@ class RawBar:
     lines: BarLines
     notes: list[RawNote] = field(default_factory=list)
     directions: list[RawDirection] = field(default_factory=list)
-    length: Fraction = Fraction(0)  # as filled
-    metre: Fraction | None = None  # quarters in a bar, where a time signature stands
+    length: Ticks = 0  # as filled
+    metre: Ticks | None = None  # of a whole bar, where a time signature stands
     fifths: int | None = None  # sharps of a key signature that stands here, below 0 flats
+
+
+@dataclass(slots=True)
+class Draft:
+    """A note that may still grow, by what it is tied to; beats in ticks."""
+
+    beat: Ticks
+    length: Ticks
+    pitch: float
+    marks: tuple[Mark, ...] = ()
+    before: tuple[Grace, ...] = ()
+    after: tuple[Grace, ...] = ()
+
+    @property
+    def end(self) -> Ticks:
+        """The beat at which it ends."""
+        return self.beat + self.length
+
+    def hold(self, length: Ticks, marks: Iterable[Mark], late: Ticks) -> None:
+        """Let it go on with more marks; a fermata of them begins so late in it."""
+        names = {mark.name for mark in self.marks}
+        self.length += length
+        self.marks += tuple(
+            mark._replace(second=float(late / TICKS) or None) if mark.name == "fermata" else mark
+            for mark in marks
+            if mark.name not in names
+        )
+
+    def note(self) -> Note:
+        """The note, in quarters."""
+        beat, length = quarters_of(self.beat), length_of(self.length)
+        return Note(beat, length, self.pitch, self.marks, self.before, self.after)
 
 
 @dataclass
 class Voice:
     """One voice, bar by bar."""
 
-    notes: list[Note] = field(default_factory=list)
+    notes: list[Draft] = field(default_factory=list)
     spans: list[Span] = field(default_factory=list)
     staff: list[Voice] = field(default_factory=list)  # all voices of its staff
     _graces: list[Grace] = field(default_factory=list)
     _tied: dict[float, int] = field(default_factory=dict)  # by pitch, the note that goes on
-    _open: dict[tuple[str, str], Fraction] = field(default_factory=dict)
+    _open: dict[tuple[str, str], Ticks] = field(default_factory=dict)
 
-    def add_bar(self, notes: list[RawNote], begin: Fraction) -> None:
+    def add_bar(self, notes: list[RawNote], begin: Ticks) -> None:
         """Add the notes of a bar that begins at a beat."""
         first = len(self.notes)
-        for raw in sorted(notes, key=lambda raw: float(raw.at)):
+        for raw in sorted(notes, key=attrgetter("at")):
             if raw.is_grace:
                 self._grace(raw, begin)
             else:
                 self._note(raw, begin)
         if self._graces and len(self.notes) > first:  # small notes before the bar line
-            self._after(self._graces)
+            self.notes[-1].after += tuple(self._graces)
             self._graces = []
 
-    def _grace(self, raw: RawNote, begin: Fraction) -> None:
-        grace = Grace(raw.pitch, raw.length, _marks(raw))
+    def _grace(self, raw: RawNote, begin: Ticks) -> None:
+        grace = Grace(raw.pitch, length_of(raw.length), _marks(raw))
         if raw.ends:
             self._ends(raw, begin + raw.at)
         if raw.is_after and self.notes:
-            self._after([grace])
+            self.notes[-1].after += (grace,)
         else:
             self._graces.append(grace)
 
-    def _after(self, graces: list[Grace]) -> None:
-        last = self.notes[-1]
-        self.notes[-1] = last._replace(after=(*last.after, *graces))
-
-    def _note(self, raw: RawNote, begin: Fraction) -> None:
-        beat = begin + raw.at
+    def _note(self, raw: RawNote, begin: Ticks) -> None:
+        beat, notes = begin + raw.at, self.notes
         if raw.ends:
             self._ends(raw, beat)
-        at = self._tied.pop(raw.pitch, None)  # some writers write only the beginning of a tie
+        # Some writers write only the beginning of a tie.
+        at = self._tied.pop(raw.pitch, None) if self._tied else None
         is_alone = at is None and "stop" in raw.ties
         if is_alone and any(voice.lengthen(raw, beat) for voice in self.staff):
             return
-        if at is not None and self.notes[at].end == beat:
-            note = self.notes[at]
-            self.notes[at] = note.longer(raw.length, _marks(raw), note.length)
+        marks = _marks(raw)
+        if at is not None and notes[at].end == beat:
+            notes[at].hold(raw.length, marks, notes[at].length)
         else:
             self._shorten_last(beat)
-            at = len(self.notes)
+            at = len(notes)
             graces, self._graces = tuple(self._graces), []
-            self.notes.append(Note(beat, raw.length, raw.pitch, _marks(raw), graces))
+            notes.append(Draft(beat, raw.length, raw.pitch, marks, graces))
         if "start" in raw.ties:
             self._tied[raw.pitch] = at
         if raw.ends:
             self._two_note_tremolo(raw)
 
-    def lengthen(self, raw: RawNote, beat: Fraction) -> bool:
+    def lengthen(self, raw: RawNote, beat: Ticks) -> bool:
         """Let the last note last longer if it is one that another voice ties on; whether it is."""
         at = self._tied.get(raw.pitch)
         if at is None or at != len(self.notes) - 1 or self.notes[at].end != beat:
             return False
-        note = self.notes[at]
-        self.notes[at] = note.longer(raw.length, _marks(raw), note.length)
+        self.notes[at].hold(raw.length, _marks(raw), self.notes[at].length)
         if "start" not in raw.ties:
             del self._tied[raw.pitch]
         return True
 
-    def _shorten_last(self, beat: Fraction) -> None:
+    def _shorten_last(self, beat: Ticks) -> None:
         """End what still sounds: one note at a time."""
-        at = float(beat)  # which is compared much sooner than fractions are
-        while self.notes and self.notes[-1].ends_at > at:
-            last = self.notes.pop()
-            if self._tied.get(last.pitch) == len(self.notes):
+        notes = self.notes
+        while notes and notes[-1].beat + notes[-1].length > beat:
+            last = notes[-1]
+            if self._tied.get(last.pitch) == len(notes) - 1:
                 del self._tied[last.pitch]
             if last.beat < beat:
-                self.notes.append(last._replace(length=beat - last.beat))
+                last.length = beat - last.beat
+            else:
+                notes.pop()
 
-    def _ends(self, raw: RawNote, beat: Fraction) -> None:
+    def _ends(self, raw: RawNote, beat: Ticks) -> None:
         """Begin and end the spans of a note; those that end, first."""
         for kind in ("stop", "start"):
             for name, which, number in raw.ends:
@@ -164,9 +196,9 @@ class Voice:
                     if name == "wavy-line":
                         self._vibrate(opened, raw)
                     else:
-                        self.spans.append(Span(SPANS[name], opened, beat))
+                        self.spans.append(_span(SPANS[name], opened, beat))
 
-    def _vibrate(self, begin: Fraction, last: RawNote) -> None:
+    def _vibrate(self, begin: Ticks, last: RawNote) -> None:
         """Let the notes after the first one of a wavy line have a vibrato, too."""
         if not any(mark.name == "vibrato" for mark in last.marks):
             last.marks.append(Mark("vibrato"))
@@ -174,8 +206,7 @@ class Voice:
             note = self.notes[at]
             if note.beat <= begin:
                 break
-            if note.marked("vibrato") is None:
-                self.notes[at] = note._replace(marks=(*note.marks, Mark("vibrato")))
+            note.hold(0, [Mark("vibrato")], 0)
 
     def _two_note_tremolo(self, raw: RawNote) -> None:
         """Two notes in quick turns: each trills with the other, on one bow."""
@@ -185,13 +216,17 @@ class Voice:
         if one.end != other.beat or one.pitch == other.pitch:
             return
         step = other.pitch - one.pitch
-        self.notes[-2] = one._replace(marks=(*one.marks, Mark("trill", step)))
-        self.notes[-1] = other._replace(marks=(*other.marks, Mark("trill", -step)))
-        self.spans.append(Span("slur", one.beat, other.beat))
+        one.marks += (Mark("trill", step),)
+        other.marks += (Mark("trill", -step),)
+        self.spans.append(_span("slur", one.beat, other.beat))
+
+
+def _span(name: str, begin: Ticks, end: Ticks) -> Span:
+    return Span(name, quarters_of(begin), quarters_of(end))
 
 
 def _marks(raw: RawNote) -> tuple[Mark, ...]:
-    return tuple(filled(mark, raw.around) for mark in raw.marks)
+    return tuple([filled(mark, raw.around) for mark in raw.marks]) if raw.marks else ()
 
 
 class Directions:
@@ -206,10 +241,10 @@ class Directions:
         self._change = OpenSpan(self.spans, notated.LONGEST_CHANGE)
         self._steady: float | None = None  # the tempo before a change
 
-    def add_bar(self, directions: list[RawDirection], begin: Fraction) -> None:
+    def add_bar(self, directions: list[RawDirection], begin: Ticks) -> None:
         """Add the directions of a bar that begins at a beat."""
-        for raw in sorted(directions, key=lambda raw: float(raw.at)):
-            self._add(raw, begin + raw.at)
+        for raw in sorted(directions, key=attrgetter("at")):
+            self._add(raw, quarters_of(begin + raw.at))
 
     def _add(self, raw: RawDirection, beat: Fraction) -> None:
         if raw.kind == "sign":
@@ -248,7 +283,7 @@ class Directions:
 
 
 def parts_of(
-    name: str, bars: list[RawBar], played: list[tuple[int, Fraction]], end: Fraction
+    name: str, bars: list[RawBar], played: list[tuple[int, Ticks]], end: Ticks
 ) -> tuple[list[Part], dict[Fraction, tuple[int, float]]]:
     """Return the voices of one part, and its tempi with their ranks (`RANKS`), by beats.
 
@@ -275,7 +310,7 @@ def parts_of(
             if key in voices:
                 voices[key].add_bar(notes, begin)
         directions.add_bar(bars[number].directions, begin)
-    directions.end(end)
+    directions.end(quarters_of(end))
     found, signs = [], tuple(directions.signs)
     staves = [staff for staff, _ in voices]
     for number, ((staff, voice), each) in enumerate(sorted(voices.items())):
@@ -286,5 +321,6 @@ def parts_of(
             (*each.spans, *directions.spans), key=lambda span: (float(span.begin), float(span.end))
         )
         if each.notes:
-            found.append(Part(name + more, tuple(each.notes), tuple(spans), signs))
+            made = tuple([draft.note() for draft in each.notes])
+            found.append(Part(name + more, made, tuple(spans), signs))
     return found, directions.tempi

@@ -81,10 +81,13 @@ _OTHER_WORDS = {
     "score": "convert export",
     "serve": "play live start run server midi osc",
     "/room/level": "reverb wet mix",
-    "/note": "play noteon note_on key",
+    "/note": "play noteon note_on noteoff note_off key",
     "/panic": "allnotesoff all_notes_off alloff stop",
     "/pitch": "freq frequency slide glide",
+    "/playing/bend": "pitchbend pitch_bend bender",
     "/playing/press": "aftertouch",
+    "/playing/speed": "bow_speed bowspeed",
+    "/playing/vibrato": "vibrato_depth",
     "/preset/load": "program",
 }
 

@@ -76,7 +76,9 @@ def sweep_to(
         result.save(target, overwrite=True)  # checked before
         journal.close(remove=True)
     except KeyboardInterrupt:
-        kept = f"{journal.count} strokes are in {journal_of(target)}; the same command goes on"
+        most = np.prod(study.shape, dtype=np.int64)
+        done = f"{journal.count} of {'at most ' * (study.levels > 0)}{most} strokes"
+        kept = f"{done} are in {journal_of(target)}; the same command goes on"
         raise KeyboardInterrupt(kept) from None
     finally:
         with suppress(OSError):

@@ -5,6 +5,7 @@ import os
 import pickle
 import re
 import signal
+import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -151,7 +152,7 @@ def own_presets(_config_home) -> Path:
 
 @pytest.fixture(autouse=True)
 def _as_before() -> Iterator[None]:
-    """Restore what commands change in this process: handlers of signals, and where Pythons look.
+    """Restore what tests change in this process: handlers of signals, where Pythons look, figures.
 
     Without the latter, scripts that are started later would not find what lies beside them.
     """
@@ -161,6 +162,8 @@ def _as_before() -> Iterator[None]:
     for number, handler in before.items():
         signal.signal(number, handler)
     os.environ.pop("PYTHONSAFEPATH", None)
+    if "matplotlib.pyplot" in sys.modules:  # else others would draw into the last one
+        sys.modules["matplotlib.pyplot"].close("all")
 
 
 @pytest.fixture

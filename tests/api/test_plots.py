@@ -3,7 +3,6 @@
 import importlib
 import sys
 import types
-from collections.abc import Iterator
 
 import matplotlib as mpl
 import numpy as np
@@ -19,13 +18,10 @@ BOWED = {"bow_force": [[0, 0], [0.03, 0.7]], "bow_velocity": [[0, 0], [0.03, 0.3
 
 
 @pytest.fixture(autouse=True)
-def plt() -> Iterator[types.ModuleType]:
-    """``matplotlib.pyplot``, which takes long to load, without figures that other tests left."""
+def plt() -> types.ModuleType:
+    """``matplotlib.pyplot``, which takes long to load."""
     mpl.use("Agg")
-    pyplot = importlib.import_module("matplotlib.pyplot")
-    pyplot.close("all")
-    yield pyplot
-    pyplot.close("all")
+    return importlib.import_module("matplotlib.pyplot")
 
 
 def sine(hz: float, seconds: float = 0.5) -> np.ndarray:

@@ -66,12 +66,9 @@ def modules() -> Iterator[str]:
 @pytest.mark.parametrize("name", list(modules()))
 def test_every_example_gives_what_it_says(name, tmp_path, monkeypatch):
     mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
     monkeypatch.chdir(tmp_path)
     module = importlib.import_module(name)
     result = doctest.testmod(module, optionflags=doctest.ELLIPSIS)
-    plt.close("all")
     assert result.failed == 0
 
 

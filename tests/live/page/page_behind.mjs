@@ -66,6 +66,17 @@ async function drawnAgain(page) {
  */
 const heard = (page) => page.evaluate(() => globalThis.contexts.at(-1).currentTime);
 
+/**
+ * Wait for a moment of the sound, s.
+ * @param {import("playwright-core").Page} page
+ * @param {number} moment
+ */
+async function heardUntil(page, moment) {
+  for (const end = Date.now() + PATIENCE; Date.now() < end && (await heard(page)) < moment;) {
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
 /** @param {import("playwright-core").Page} page @param {boolean} isHidden */
 function tellHidden(page, isHidden) {
   return page.evaluate((hidden) => {
@@ -113,10 +124,10 @@ export default async function (browser, url, { words: [folder] }) {
   await other.bringToFront();
   await tellHidden(page, true);
   await session.send("Page.setWebLifecycleState", { state: "frozen" });
-  const [left, drawn] = [await heard(page), await page.evaluate(() => globalThis.drawn)];
-  for (const end = Date.now() + PATIENCE; Date.now() < end && (await heard(page)) < left + AWAY;) {
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
+  const left = await heard(page);
+  await heardUntil(page, left + AWAY / 2); // what was on its way is drawn
+  const drawn = await page.evaluate(() => globalThis.drawn);
+  await heardUntil(page, left + AWAY);
   found.away = (await heard(page)) - left;
   found.drawnAway = (await page.evaluate(() => globalThis.drawn)) - drawn;
   await session.send("Page.setWebLifecycleState", { state: "active" });

@@ -65,7 +65,7 @@ def test_behind_another_tab_keys_and_pictures_end_and_what_sounds_goes_on(soundi
     behind = drive("page_behind.mjs", sounding, str(folder))
     assert behind["hasFocus"] is False
     assert behind["keyEnded"]
-    assert behind["drawnAway"] < 5  # in two seconds: frames that were on their way
+    assert behind["drawnAway"] < 3  # in a second, once what was on its way is drawn
     assert behind["away"] >= 2.0
     assert behind["noteEnded"]
     sound, rate = soundfile.read(folder / "behind.wav", dtype="float32")
